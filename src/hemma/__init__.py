@@ -1,0 +1,3 @@
+"""Hemma: home energy management that learns from an optimiser."""
+
+__version__ = "0.1.0"

@@ -1,0 +1,95 @@
+"""Models and training states on disk: safetensors with a JSON header, written whole or not at all."""
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import jax
+import numpy as np
+from safetensors import SafetensorError, safe_open
+from safetensors.numpy import save
+
+from hemma.errors import HemmaError
+
+Tree = TypeVar("Tree")
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write ``content`` to ``path`` by way of a temporary name in the same folder, then rename."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(content)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def save_tree(path: Path, tree: Any, header: Mapping[str, Any]) -> None:
+    """Save the leaves of a pytree by their paths, with ``header`` (anything JSON can say) beside them.
+
+    Random keys are stored as their raw data. The structure is not stored: ``load_tree`` takes it from a
+    tree of the same kind.
+    """
+    tensors = {name: _raw(leaf) for name, leaf in _named_leaves(tree)}
+    write_atomically(path, save(tensors, metadata={"hemma": json.dumps(dict(header))}))
+
+
+def load_tree(path: Path, like: Tree) -> Tree:
+    """Load what ``save_tree`` saved into the structure of ``like``; shapes and names must agree."""
+    with _opened(path) as file:
+        stored = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+    expected = _named_leaves(like)
+    if {name for name, _ in expected} != set(stored):
+        missing = sorted({name for name, _ in expected} ^ set(stored))
+        raise HemmaError(
+            f"{path}: not a checkpoint of this kind; entries {missing[:4]} differ. Train it again"
+        )
+    leaves = [_restored(path, name, stored[name], leaf) for name, leaf in expected]
+    return jax.tree.unflatten(jax.tree.structure(like), leaves)
+
+
+def load_header(path: Path) -> dict[str, Any]:
+    """The header that was saved with a checkpoint."""
+    with _opened(path) as file:
+        metadata = file.metadata() or {}
+    if "hemma" not in metadata:
+        raise HemmaError(f"{path}: expected a Hemma checkpoint, found another safetensors file")
+    return json.loads(metadata["hemma"])
+
+
+def _opened(path: Path):
+    try:
+        return safe_open(path, framework="numpy")
+    except (OSError, SafetensorError) as error:
+        raise HemmaError(
+            f"{path}: expected a Hemma checkpoint (.safetensors), cannot read it: {error}"
+        ) from error
+
+
+def _named_leaves(tree: Any) -> list[tuple[str, Any]]:
+    return [(jax.tree_util.keystr(path), leaf) for path, leaf in jax.tree_util.tree_leaves_with_path(tree)]
+
+
+def _is_key(leaf: Any) -> bool:
+    return isinstance(leaf, jax.Array) and jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+
+
+def _raw(leaf: Any) -> np.ndarray:
+    return np.ascontiguousarray(jax.random.key_data(leaf) if _is_key(leaf) else leaf)
+
+
+def _restored(path: Path, name: str, stored: np.ndarray, like: Any) -> Any:
+    if stored.shape != _raw(like).shape:
+        raise HemmaError(
+            f"{path}: {name} has shape {stored.shape}, expected {_raw(like).shape}. Train it again"
+        )
+    if _is_key(like):
+        return jax.random.wrap_key_data(jax.numpy.asarray(stored))
+    return jax.numpy.asarray(stored, dtype=np.asarray(like).dtype)

@@ -1,0 +1,9 @@
+"""The error that a user's mistake raises: its text is the whole message, never a traceback."""
+
+
+class HemmaError(ValueError):
+    """Bad input (a file, a setting, a time stamp, an unknown home).
+
+    The text says what was expected, what came and where, and what to do. The command line prints it and
+    exits with status 2; code that calls Hemma may catch it as a ``ValueError``.
+    """
