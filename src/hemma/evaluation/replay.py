@@ -1,0 +1,106 @@
+"""Replay a controller over a period in double precision: what every method is measured by."""
+
+from dataclasses import dataclass
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float
+
+from hemma.home import Controller, Home, Trajectory, replay
+from hemma.types import Array, Exogenous
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a controller did to a home, one value a slot; energies and temperatures at the end of the slot."""
+
+    battery_power: Float[np.ndarray, "slots"]
+    """e [kW], charging positive, as carried out."""
+    hvac_power: Float[np.ndarray, "slots"]
+    """h [kW], as carried out."""
+    battery_energy: Float[np.ndarray, "slots"]
+    """E [kWh] at the end of the slot."""
+    indoor_temperature: Float[np.ndarray, "slots"]
+    """T_in [degC] at the end of the slot."""
+    grid_power: Float[np.ndarray, "slots"]
+    """g [kW], buying positive."""
+    transaction: Float[np.ndarray, "slots"]
+    """X1 [currency]."""
+    ageing: Float[np.ndarray, "slots"]
+    """X2 [currency]."""
+    temperature_deviation: Float[np.ndarray, "slots"]
+    """X3 [degC]."""
+
+    @property
+    def cost(self) -> Float[np.ndarray, "slots"]:
+        """X1 + X2 of each slot [currency], objective (1)."""
+        return self.transaction + self.ageing
+
+    @property
+    def total_deviation(self) -> float:
+        """D, the sum of X3 over the period [degC], objective (2)."""
+        return float(np.sum(self.temperature_deviation))
+
+
+def evaluate(
+    home: Home, exogenous: Exogenous, controller: Controller, key: Array, disturbance_deviation: float = 0.0
+) -> Outcome:
+    """Run ``controller`` from the home's initial state through ``exogenous`` without any reset.
+
+    Everything is cast to float64, whatever precision the controller was trained in. The thermal
+    disturbance of the home is replaced by one of ``disturbance_deviation`` [degC]: none unless asked for,
+    because perfect information knows none either. Compiled once for each kind of controller.
+    """
+    with jax.enable_x64(True):
+        inputs = _in_double((home, exogenous, controller, key, disturbance_deviation))
+        return _outcome(_replayed(*inputs), ())
+
+
+def evaluate_stacked(
+    home: Home, exogenous: Exogenous, controllers: Controller, keys: Array, disturbance_deviation: float = 0.0
+) -> tuple[Outcome, ...]:
+    """Like ``evaluate`` for one controller a seed: every array of ``controllers`` and ``keys`` is stacked
+    along its first axis, and one compiled call runs all of them."""
+    with jax.enable_x64(True):
+        inputs = _in_double((home, exogenous, controllers, keys, disturbance_deviation))
+        trajectories = _replayed_stacked(*inputs)
+        return tuple(_outcome(trajectories, (seed,)) for seed in range(len(keys)))
+
+
+def _in_double(tree: tuple) -> tuple:
+    """Every number of the tree as an array of float64, so that other values need no new compilation."""
+
+    def double(leaf):
+        number = isinstance(leaf, float) or eqx.is_inexact_array_like(leaf)
+        return jnp.asarray(leaf, float) if number else leaf
+
+    return jax.tree.map(double, tree)
+
+
+def _run(
+    home: Home, exogenous: Exogenous, controller: Controller, key: Array, deviation: Array
+) -> Trajectory:
+    home = eqx.tree_at(lambda h: h.disturbance_deviation, home, deviation)
+    return replay(home, exogenous, controller, home.reset(), key)
+
+
+_replayed = eqx.filter_jit(_run)
+_replayed_stacked = eqx.filter_jit(
+    eqx.filter_vmap(_run, in_axes=(None, None, eqx.if_array(0), eqx.if_array(0), None))
+)
+
+
+def _outcome(trajectory: Trajectory, index: tuple[int, ...]) -> Outcome:
+    steps = jax.tree.map(lambda x: np.asarray(x)[index], trajectory.steps)
+    return Outcome(
+        battery_power=steps.action.battery_power,
+        hvac_power=steps.action.hvac_power,
+        battery_energy=steps.state.battery_energy,
+        indoor_temperature=steps.state.indoor_temperature,
+        grid_power=steps.grid_power,
+        transaction=steps.costs.transaction,
+        ageing=steps.costs.ageing,
+        temperature_deviation=steps.costs.temperature_deviation,
+    )
