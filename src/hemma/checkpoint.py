@@ -42,7 +42,10 @@ def save_tree(path: Path, tree: Any, header: Mapping[str, Any]) -> None:
 
 
 def load_tree(path: Path, like: Tree) -> Tree:
-    """Load what ``save_tree`` saved into the structure of ``like``; shapes and names must agree."""
+    """Load what ``save_tree`` saved into the structure of ``like``; shapes and names must agree.
+
+    Each leaf comes back as what it is in ``like``: a JAX array, a NumPy array or a Python number.
+    """
     with _opened(path) as file:
         stored = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
     expected = _named_leaves(like)
@@ -82,7 +85,7 @@ def _is_key(leaf: Any) -> bool:
 
 
 def _raw(leaf: Any) -> np.ndarray:
-    return np.ascontiguousarray(jax.random.key_data(leaf) if _is_key(leaf) else leaf)
+    return np.asarray(jax.random.key_data(leaf) if _is_key(leaf) else leaf, order="C")
 
 
 def _restored(path: Path, name: str, stored: np.ndarray, like: Any) -> Any:
@@ -92,4 +95,8 @@ def _restored(path: Path, name: str, stored: np.ndarray, like: Any) -> Any:
         )
     if _is_key(like):
         return jax.random.wrap_key_data(jax.numpy.asarray(stored))
-    return jax.numpy.asarray(stored, dtype=np.asarray(like).dtype)
+    if isinstance(like, jax.Array):
+        return jax.numpy.asarray(stored, dtype=like.dtype)
+    if isinstance(like, np.ndarray):
+        return stored.astype(like.dtype)
+    return type(like)(stored.item())
