@@ -1,0 +1,1 @@
+"""Inverse reinforcement learning: the learned reward, the discriminator and Algorithm 1."""

@@ -1,0 +1,1 @@
+"""Reinforcement learning: scaled states, policies, the learner's environment, PPO."""

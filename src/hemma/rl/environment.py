@@ -1,0 +1,93 @@
+"""The environment of a learner: a home that replays its training traces, in rollouts of fixed length."""
+
+import equinox as eqx
+import jax
+from jaxtyping import Float, Int
+
+from hemma.home import Home, HomeState, observe, paper_state
+from hemma.rl.actions import to_power
+from hemma.rl.policy import GaussianPolicy, log_density
+from hemma.rl.scaling import StateScaler
+from hemma.types import Array, Costs, Exogenous
+
+
+class Transitions(eqx.Module):
+    """Transitions (s, a, s') of a learner; states are in features, actions in fractions."""
+
+    features: Float[Array, "*batch features"]
+    """s, scaled."""
+    fractions: Float[Array, "*batch actions"]
+    """a, as sampled: may lie beyond [-1, 1]."""
+    next_features: Float[Array, "*batch features"]
+    """s', scaled."""
+
+
+class Rollout(eqx.Module):
+    """What a policy did in ``rollouts`` rollouts of ``slots`` slots; arrays are (slots, rollouts, ...)."""
+
+    transitions: Transitions
+    log_density: Float[Array, "slots rollouts"]
+    """log pi(a|s) under the policy that acted."""
+    costs: Costs
+    """X1, X2, X3 of the home. No learner of the paper's method reads them; explicit rewards do."""
+
+
+class Environment(eqx.Module):
+    """A home and the traces it replays, seen through a scaler. It never terminates."""
+
+    home: Home
+    exogenous: Exogenous
+    available: Int[Array, ""]
+    """How many slots of ``exogenous`` may be replayed; what lies behind them is padding and never read."""
+    scaler: StateScaler
+
+    def reset(self, key: Array, slots: int) -> tuple[HomeState, Array]:
+        """A random first slot (``slots`` more must follow it), battery level and indoor temperature.
+
+        E is uniform over the battery's range; T_in is uniform over the comfort band and one degree beyond.
+        """
+        start_key, energy_key, temperature_key = jax.random.split(key, 3)
+        start = jax.random.randint(start_key, (), 0, self.available - slots)
+        battery, comfort = self.home.battery, self.home.comfort
+        energy = jax.random.uniform(energy_key, minval=battery.min_energy, maxval=battery.max_energy)
+        temperature = jax.random.uniform(temperature_key, minval=comfort.low - 1, maxval=comfort.high + 1)
+        return self.home.reset(energy, temperature), start
+
+    def features(self, state: HomeState, slot: Array) -> Float[Array, "features"]:
+        """The scaled state of the paper when the home stands at the start of ``slot`` of the traces."""
+        return self.scaler(paper_state(observe(state, jax.tree.map(lambda x: x[slot], self.exogenous))))
+
+
+def collect(
+    environment: Environment,
+    policy: GaussianPolicy,
+    deviation: Float[Array, "actions"],
+    shape: tuple,
+    key: Array,
+) -> Rollout:
+    """Let the policy act with standard ``deviation`` of its fractions; ``shape`` is (slots, rollouts)."""
+    slots, rollouts = shape
+    reset_key, noise_key, disturbance_key = jax.random.split(key, 3)
+    states, starts = jax.vmap(lambda k: environment.reset(k, slots))(jax.random.split(reset_key, rollouts))
+    noise = jax.random.normal(noise_key, (slots, rollouts, deviation.size)) * deviation
+    keys = jax.random.split(disturbance_key, rollouts)
+    disturbances = jax.vmap(lambda k: environment.home.disturbances(k, slots))(keys).T
+
+    def act(state: HomeState, start: Array, features: Array, noise: Array, disturbance: Array):
+        slot = start + state.slot
+        now = jax.tree.map(lambda x: x[slot], environment.exogenous)
+        mean = policy.mean(features)
+        fractions = mean + noise
+        action = to_power(environment.home, state.battery_energy, fractions)
+        step = environment.home.step(state, now, action, disturbance)
+        after = environment.features(step.state, slot + 1)
+        density = log_density(fractions, mean, deviation)
+        return step.state, Rollout(Transitions(features, fractions, after), density, step.costs)
+
+    def slot(carry: tuple[HomeState, Array], inputs: tuple[Array, Array]):
+        states, features = carry
+        states, rollout = jax.vmap(act)(states, starts, features, *inputs)
+        return (states, rollout.transitions.next_features), rollout
+
+    features = jax.vmap(environment.features)(states, starts)
+    return jax.lax.scan(slot, (states, features), (noise, disturbances))[1]

@@ -1,0 +1,163 @@
+"""Proximal policy optimisation (Schulman et al. 2017, arXiv 1707.06347) for homes that never terminate."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import optax
+from jaxtyping import Float
+
+from hemma.rl.descent import begin, descend
+from hemma.rl.environment import Rollout
+from hemma.rl.network import Network
+from hemma.rl.policy import FEATURES, GaussianPolicy, log_density
+from hemma.types import Array
+
+
+@dataclass(frozen=True)
+class PPOSettings:
+    """Sizes and rates of PPO; where a value comes from stands in ``docs/paper.md``."""
+
+    rollouts: int = 64
+    slots: int = 48
+    discount: float = 0.95
+    """gamma."""
+    trace: float = 0.9
+    """lambda of the generalised advantage estimate."""
+    clip: float = 0.2
+    epochs: int = 3
+    minibatches: int = 4
+    learning_rate: float = 1e-3
+    value_learning_rate: float = 2e-3
+    max_gradient_norm: float = 0.5
+    hidden: tuple[int, ...] = (64, 64)
+
+
+class ActorCritic(eqx.Module):
+    """Policy and state value, trained together."""
+
+    policy: GaussianPolicy
+    value: Network
+
+    def __init__(self, hidden: tuple[int, ...], key: Array):
+        """Random weights."""
+        policy_key, value_key = jax.random.split(key)
+        self.policy = GaussianPolicy(hidden, policy_key)
+        self.value = Network((FEATURES, *hidden, 1), value_key)
+
+    def values(self, features: Float[Array, "*batch features"]) -> Float[Array, "*batch"]:
+        """V(s) of a batch of states."""
+        flat = features.reshape(-1, features.shape[-1])
+        return jax.vmap(self.value)(flat).reshape(features.shape[:-1])
+
+
+def optimiser(settings: PPOSettings) -> optax.GradientTransformation:
+    """Adam with a bound on the norm of each network's gradient."""
+
+    def adam(rate: float) -> optax.GradientTransformation:
+        return optax.chain(optax.clip_by_global_norm(settings.max_gradient_norm), optax.adam(rate))
+
+    rates: dict[Hashable, optax.GradientTransformation] = {
+        "policy": adam(settings.learning_rate),
+        "value": adam(settings.value_learning_rate),
+    }
+    return optax.multi_transform(rates, _labels)
+
+
+def _labels(learner: ActorCritic) -> ActorCritic:
+    labels = jax.tree.map(lambda _: "value", learner)
+    return eqx.tree_at(lambda t: t.policy, labels, jax.tree.map(lambda _: "policy", learner.policy))
+
+
+def advantages(
+    rewards: Float[Array, "slots rollouts"],
+    values: Float[Array, "slots rollouts"],
+    next_values: Float[Array, "slots rollouts"],
+    settings: PPOSettings,
+) -> Float[Array, "slots rollouts"]:
+    """Generalised advantage estimate, bootstrapped at the end of the rollout as everywhere else.
+
+    A_t = delta_t + gamma lambda A_{t+1}, delta_t = r_t + gamma V(s_{t+1}) - V(s_t)
+    (Schulman et al. 2016, arXiv 1506.02438, equation 16).
+    """
+    deltas = rewards + settings.discount * next_values - values
+
+    def backwards(following: Array, delta: Array) -> tuple[Array, Array]:
+        advantage = delta + settings.discount * settings.trace * following
+        return advantage, advantage
+
+    return jax.lax.scan(backwards, jnp.zeros_like(deltas[0]), deltas, reverse=True)[1]
+
+
+class Batch(eqx.Module):
+    """Samples of one update, shape (samples, ...)."""
+
+    features: Array
+    fractions: Array
+    log_density: Array
+    advantage: Array
+    target: Array
+    """Value target A + V."""
+
+
+def loss(learner: ActorCritic, batch: Batch, deviation: Array, clip: float) -> Array:
+    """Clipped surrogate plus squared value error.
+
+    -E[min(rho A, clip(rho, 1 - c, 1 + c) A)] + E[(V - target)^2] / 2, rho = pi(a|s) / pi_old(a|s).
+    """
+    mean = jax.vmap(learner.policy.mean)(batch.features)
+    ratio = jnp.exp(log_density(batch.fractions, mean, deviation) - batch.log_density)
+    bounded = jnp.clip(ratio, 1 - clip, 1 + clip)
+    surrogate = jnp.minimum(ratio * batch.advantage, bounded * batch.advantage)
+    error = learner.values(batch.features) - batch.target
+    return -jnp.mean(surrogate) + 0.5 * jnp.mean(error**2)
+
+
+class Learner(eqx.Module):
+    """What PPO carries from update to update."""
+
+    networks: ActorCritic
+    optimiser: optax.OptState
+
+
+def start(settings: PPOSettings, key: Array) -> Learner:
+    """A learner with random weights."""
+    networks = ActorCritic(settings.hidden, key)
+    return Learner(networks, begin(optimiser(settings), networks))
+
+
+def update(
+    learner: Learner, rollout: Rollout, rewards: Array, deviation: Array, settings: PPOSettings, key: Array
+) -> Learner:
+    """One PPO update on a rollout whose ``rewards`` (slots, rollouts) the caller chose."""
+    batch = _batch(learner.networks, rollout, rewards, settings)
+    samples = batch.target.shape[0]
+    method = optimiser(settings)
+
+    def minibatch(learner: Learner, rows: Array) -> tuple[Learner, None]:
+        chosen = jax.tree.map(lambda x: x[rows], batch)
+        gradient = jax.grad(loss)(learner.networks, chosen, deviation, settings.clip)
+        return Learner(*descend(method, gradient, learner.optimiser, learner.networks)), None
+
+    def rows(key: Array) -> Array:
+        return jax.random.permutation(key, samples).reshape(settings.minibatches, -1)
+
+    order = jax.vmap(rows)(jax.random.split(key, settings.epochs)).reshape(
+        -1, samples // settings.minibatches
+    )
+    return jax.lax.scan(minibatch, learner, order)[0]
+
+
+def _batch(networks: ActorCritic, rollout: Rollout, rewards: Array, settings: PPOSettings) -> Batch:
+    values = networks.values(rollout.transitions.features)
+    last = networks.values(rollout.transitions.next_features[-1])
+    next_values = jnp.concatenate([values[1:], last[None]])
+    advantage = advantages(rewards, values, next_values, settings)
+    normal = (advantage - advantage.mean()) / (advantage.std() + 1e-6)
+    transitions = rollout.transitions
+    batch = Batch(
+        transitions.features, transitions.fractions, rollout.log_density, normal, advantage + values
+    )
+    return jax.tree.map(lambda x: x.reshape(-1, *x.shape[2:]), batch)
