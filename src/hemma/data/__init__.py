@@ -1,0 +1,7 @@
+"""Traces: readers of foreign formats, tariffs, and the embedded data set."""
+
+from hemma.data.embedded import AUSTIN2021_HOMES, load_austin2021
+from hemma.data.tariff import Tariff
+from hemma.data.traces import Split, Traces, split
+
+__all__ = ["AUSTIN2021_HOMES", "Split", "Tariff", "Traces", "load_austin2021", "split"]
