@@ -133,7 +133,8 @@ def iterate(
     shape = (settings.ppo.slots, settings.ppo.rollouts)
     rollout = collect(environment, policy, deviation, shape, trajectory_key)
     rewards = reward.batch(rollout.transitions)
-    learner = ppo.update(state.learner, rollout, rewards, deviation, settings.ppo, update_key)
+    objective = ppo.Objective(rewards, deviation, share=1.0 - 0.9 * state.iteration / settings.iterations)
+    learner = ppo.update(state.learner, rollout, objective, settings.ppo, update_key)
 
     keep = jnp.minimum(settings.averaging, state.iteration / (state.iteration + 10.0))
     average = jax.tree.map(lambda a, p: keep * a + (1 - keep) * p, state.average, learner.networks.policy)

@@ -25,13 +25,13 @@ CHUNK = 25
 
 
 class Curve(eqx.Module):
-    """The learning curves of all runs, one value per run and chunk."""
+    """Learning curves: one chunk of one run, or (runs, chunks)."""
 
     progress: Progress
     """Means over the chunk."""
-    training_cost: Float[Array, "runs chunks"]
+    training_cost: Float[Array, "*chunks"]
     """X1 + X2 a day of the policy without exploration on its own training days [currency/day]."""
-    training_deviation: Float[Array, "runs chunks"]
+    training_deviation: Float[Array, "*chunks"]
     """Mean X3 of the same [degC]."""
 
 

@@ -3,7 +3,10 @@
 from typing import Any, TypeVar
 
 import equinox as eqx
+import jax
 import optax
+
+from hemma.types import Array
 
 Module = TypeVar("Module")
 
@@ -14,8 +17,12 @@ def begin(method: optax.GradientTransformation, module: Any) -> optax.OptState:
 
 
 def descend(
-    method: optax.GradientTransformation, gradient: Any, state: optax.OptState, module: Module
+    method: optax.GradientTransformation,
+    gradient: Any,
+    state: optax.OptState,
+    module: Module,
+    share: Array | float = 1.0,
 ) -> tuple[Module, optax.OptState]:
-    """The module after one step along ``gradient``, and the method's next state."""
+    """The module after this ``share`` of a step along ``gradient``, and the method's next state."""
     updates, state = method.update(gradient, state, module)  # type: ignore[arg-type]
-    return eqx.apply_updates(module, updates), state
+    return eqx.apply_updates(module, jax.tree.map(lambda u: share * u, updates)), state

@@ -23,10 +23,10 @@ class Transitions(eqx.Module):
 
 
 class Rollout(eqx.Module):
-    """What a policy did in ``rollouts`` rollouts of ``slots`` slots; arrays are (slots, rollouts, ...)."""
+    """What a policy did: one slot, or ``slots`` slots of ``rollouts`` rollouts, (slots, rollouts, ...)."""
 
     transitions: Transitions
-    log_density: Float[Array, "slots rollouts"]
+    log_density: Float[Array, "*batch"]
     """log pi(a|s) under the policy that acted."""
     costs: Costs
     """X1, X2, X3 of the home. No learner of the paper's method reads them; explicit rewards do."""

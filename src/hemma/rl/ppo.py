@@ -122,6 +122,17 @@ class Learner(eqx.Module):
     optimiser: optax.OptState
 
 
+class Objective(eqx.Module):
+    """What an update is to improve, and how boldly."""
+
+    rewards: Float[Array, "slots rollouts"]
+    """r of each transition, whoever says so."""
+    deviation: Float[Array, "actions"]
+    """Standard deviation with which the policy acted."""
+    share: Array | float = 1.0
+    """Share of the learning rates to use, for rates that fall as training goes on."""
+
+
 def start(settings: PPOSettings, key: Array) -> Learner:
     """A learner with random weights."""
     networks = ActorCritic(settings.hidden, key)
@@ -129,17 +140,17 @@ def start(settings: PPOSettings, key: Array) -> Learner:
 
 
 def update(
-    learner: Learner, rollout: Rollout, rewards: Array, deviation: Array, settings: PPOSettings, key: Array
+    learner: Learner, rollout: Rollout, objective: Objective, settings: PPOSettings, key: Array
 ) -> Learner:
-    """One PPO update on a rollout whose ``rewards`` (slots, rollouts) the caller chose."""
-    batch = _batch(learner.networks, rollout, rewards, settings)
+    """One PPO update on a rollout, ``settings.epochs`` passes over its samples."""
+    batch = _batch(learner.networks, rollout, objective.rewards, settings)
     samples = batch.target.shape[0]
     method = optimiser(settings)
 
     def minibatch(learner: Learner, rows: Array) -> tuple[Learner, None]:
         chosen = jax.tree.map(lambda x: x[rows], batch)
-        gradient = jax.grad(loss)(learner.networks, chosen, deviation, settings.clip)
-        return Learner(*descend(method, gradient, learner.optimiser, learner.networks)), None
+        gradient = jax.grad(loss)(learner.networks, chosen, objective.deviation, settings.clip)
+        return Learner(*descend(method, gradient, learner.optimiser, learner.networks, objective.share)), None
 
     def rows(key: Array) -> Array:
         return jax.random.permutation(key, samples).reshape(settings.minibatches, -1)

@@ -9,14 +9,18 @@ from hemma.types import Array
 
 HOUR = 6
 """Position of t' in the paper's state."""
+SPIKY = np.array([True, True, False, False, False, True])
+"""Which of the other quantities have rare values far from the usual ones: p, l and u."""
 
 
 class StateScaler(eqx.Module):
     """Maps s = (p, l, E, T_out, T_in, u, t') to eight features of about unit size.
 
-    Each quantity but the hour becomes asinh((x - centre) / spread): linear around the usual values and
-    logarithmic far out, so that one price spike in the training days neither crushes the usual prices to
-    nothing nor throws the network off when a higher one comes. The hour becomes its sine and cosine.
+    Battery energy and temperatures become (x - centre) / spread: holding a temperature is a linear law that
+    must go on beyond the hottest training day. PV, load and price become asinh((x - centre) / spread),
+    linear around the usual values and logarithmic far out, so that one price spike in the training days
+    neither crushes the usual prices to nothing nor throws the network off when a higher one comes. The hour
+    becomes its sine and cosine.
     """
 
     centre: Float[Array, " quantities"]
@@ -27,7 +31,8 @@ class StateScaler(eqx.Module):
     def __call__(self, state: Float[Array, "*batch 7"]) -> Float[Array, "*batch 8"]:
         """Features of a state in its units."""
         angle = 2 * jnp.pi * state[..., HOUR] / 24
-        quantities = jnp.arcsinh((state[..., :HOUR] - self.centre) / self.spread)
+        scaled = (state[..., :HOUR] - self.centre) / self.spread
+        quantities = jnp.where(SPIKY, jnp.arcsinh(scaled), scaled)
         return jnp.concatenate([quantities, jnp.sin(angle)[..., None], jnp.cos(angle)[..., None]], axis=-1)
 
 

@@ -1,0 +1,194 @@
+"""AIRL: the reward and the discriminator by hand, and Algorithm 1 against experts with a known rule."""
+
+import dataclasses
+import math
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hemma.errors import HemmaError
+from hemma.home import Home, observe, paper_state
+from hemma.irl import training
+from hemma.irl.airl import AIRLSettings, deviation_at
+from hemma.irl.discriminator import cross_entropy, gradient_penalty, logits
+from hemma.irl.reward import ShapedReward
+from hemma.irl.task import Demonstrated, make_task, stack
+from hemma.rl.environment import Transitions
+from hemma.rl.ppo import PPOSettings
+from hemma.types import Action, Exogenous
+
+SMALL = AIRLSettings(
+    iterations=50,
+    agent_rollouts=4,
+    batch=64,
+    hidden=(16,),
+    ppo=PPOSettings(rollouts=8, slots=12, hidden=(16,)),
+)
+
+
+def traces(days, seed=0):
+    rng = np.random.default_rng(seed)
+    hour = np.arange(24 * days) % 24.0
+    price = np.where((hour >= 14) & (hour < 20), 0.3, 0.1) * rng.uniform(0.9, 1.1, hour.size)
+    return Exogenous(
+        pv_generation=np.maximum(0.0, np.sin((hour - 6) / 12 * np.pi)),
+        load=rng.uniform(0.3, 1.5, hour.size),
+        outdoor_temperature=29 + 6 * np.sin((hour - 9) / 24 * 2 * np.pi),
+        buying_price=price,
+        selling_price=0.9 * price,
+        hour_of_day=hour,
+    )
+
+
+def demonstrate(home, exogenous, rule):
+    """Carry out ``rule(observation) -> Action`` and note the transitions."""
+
+    def slot(state, now):
+        observation = observe(state, now)
+        step = home.step(state, now, rule(observation), jnp.zeros(()))
+        action = jnp.stack([step.action.battery_power, step.action.hvac_power])
+        return step.state, (paper_state(observation), action)
+
+    exogenous = jax.tree.map(lambda x: jnp.asarray(x, float), exogenous)
+    _, (states, actions) = jax.lax.scan(slot, home.reset(), exogenous)
+    return Demonstrated(states[:-1], actions[:-1], states[1:])
+
+
+def price_rule(observation):
+    """Discharge when dear, charge when cheap; HVAC proportional to the outdoor temperature."""
+    dear = observation.buying_price > 0.2
+    power = jnp.where(dear, -3.0, 3.0)
+    return Action(power, jnp.clip((observation.outdoor_temperature - 24) / 10, 0.0, 2.0))
+
+
+def task(seed=0, days=5, settings=SMALL):
+    home, exogenous = Home(), traces(days)
+    return make_task(home, exogenous, demonstrate(home, exogenous, price_rule), seed, settings.ppo.slots)
+
+
+def transitions(samples, seed=0):
+    rng = np.random.default_rng(seed)
+    return Transitions(*(jnp.asarray(rng.normal(size=(samples, n)), float) for n in (8, 2, 8)))
+
+
+def test_reward_is_g_plus_discounted_shaping_difference():
+    reward = ShapedReward((16,), 0.9, jax.random.key(0))
+    batch = transitions(5)
+    for i in range(5):
+        s, a, after = (np.asarray(x[i]) for x in (batch.features, batch.fractions, batch.next_features))
+
+        def network(net, x):
+            hidden = np.tanh(np.asarray(net.weights[0]) @ x + np.asarray(net.biases[0]))
+            return (np.asarray(net.weights[1]) @ hidden + np.asarray(net.biases[1]))[0]
+
+        g = network(reward.approximator, np.concatenate([s, a]))
+        expected = g + 0.9 * network(reward.shaping, after) - network(reward.shaping, s)
+        np.testing.assert_allclose(reward.batch(batch)[i], expected, rtol=1e-4, atol=1e-5)
+
+
+def test_shaping_telescopes_along_a_trajectory():
+    """sum gamma^t r_t = sum gamma^t g_t + gamma^T h(s_T) - h(s_0): shaping cannot change what is best."""
+    reward = ShapedReward((16,), 0.9, jax.random.key(1))
+    batch = transitions(9)
+    chained = eqx.tree_at(lambda t: t.next_features, batch, jnp.roll(batch.features, -1, axis=0))
+    path = jax.tree.map(lambda x: x[:8], chained)
+    discounts = 0.9 ** jnp.arange(8)
+    g = jax.vmap(reward.approximator)(jnp.concatenate([path.features, path.fractions], axis=1))[:, 0]
+    ends = 0.9**8 * reward.shaping(batch.features[8])[0] - reward.shaping(batch.features[0])[0]
+    total = jnp.sum(discounts * reward.batch(path))
+    np.testing.assert_allclose(total, jnp.sum(discounts * g) + ends, rtol=1e-4)
+
+
+def test_logit_is_that_of_equation_10_and_loss_that_of_equation_12():
+    reward = ShapedReward((16,), 0.9, jax.random.key(2))
+    expert, agent = transitions(6, 1), transitions(6, 2)
+    log_pi = jnp.linspace(-3.0, 2.0, 6)
+    scores = []
+    for batch in (expert, agent):
+        r, pi = np.exp(np.asarray(reward.batch(batch))), np.exp(np.asarray(log_pi))
+        scores.append(r / (r + pi))
+        np.testing.assert_allclose(jax.nn.sigmoid(logits(reward, batch, log_pi, 10.0)), scores[-1], rtol=1e-5)
+    expected = 0.5 * (-np.log(scores[0]).mean() - np.log(1 - scores[1]).mean())
+    loss = cross_entropy(logits(reward, expert, log_pi, 10.0), logits(reward, agent, log_pi, 10.0))
+    np.testing.assert_allclose(loss, expected, rtol=1e-5)
+
+
+def test_an_impossible_action_has_a_finite_logit():
+    reward = ShapedReward((16,), 0.9, jax.random.key(2))
+    batch = transitions(3)
+    assert np.isfinite(np.asarray(logits(reward, batch, jnp.full(3, -jnp.inf), 10.0))).all()
+
+
+def test_gradient_penalty_is_zero_for_a_flat_reward_and_grows_with_slope():
+    reward = ShapedReward((16,), 0.9, jax.random.key(3))
+    batches = transitions(32, 1), transitions(32, 2)
+    flat = jax.tree.map(lambda w: 0.01 * w, reward)
+    steep = jax.tree.map(lambda w: 10.0 * w, reward)
+    assert float(gradient_penalty(flat, *batches, jax.random.key(0))) == 0.0
+    assert float(gradient_penalty(steep, *batches, jax.random.key(0))) > 10.0
+
+
+def test_deviation_shrinks_geometrically_and_then_stays():
+    settings = AIRLSettings(iterations=100, first_deviation=(0.4, 0.2), last_deviation=(0.1, 0.2), shrinking=0.5)
+    np.testing.assert_allclose(deviation_at(jnp.asarray(0), settings), [0.4, 0.2], rtol=1e-6)
+    np.testing.assert_allclose(deviation_at(jnp.asarray(25), settings), [0.2, 0.2], rtol=1e-6)
+    np.testing.assert_allclose(deviation_at(jnp.asarray(90), settings), [0.1, 0.2], rtol=1e-6)
+
+
+def test_padding_a_task_changes_nothing():
+    """A run of 3 days trains to the same weights alone and beside a run of 5 days."""
+    alone = training.train(stack([task(days=3)]), SMALL)
+    beside = training.train(stack([task(days=3), task(seed=1, days=5)]), SMALL)
+    for a, b in zip(jax.tree.leaves(alone.state.average), jax.tree.leaves(beside.state.average), strict=True):
+        np.testing.assert_allclose(a[0], b[0], rtol=1e-3, atol=1e-4)
+
+
+def test_training_goes_on_from_a_file_to_the_same_result(tmp_path):
+    runs = stack([task(seed=0), task(seed=1)])
+    unbroken = training.train(runs, SMALL)
+    half = training.advance(training.begin(runs, SMALL), runs, SMALL)
+    training.save(tmp_path / "half.safetensors", half, {})
+    resumed = training.train(runs, SMALL, training.load(tmp_path / "half.safetensors", runs, SMALL))
+    for a, b in zip(jax.tree.leaves(unbroken), jax.tree.leaves(resumed), strict=True):
+        if jnp.issubdtype(a.dtype, jax.dtypes.prng_key):
+            a, b = jax.random.key_data(a), jax.random.key_data(b)
+        np.testing.assert_array_equal(a, b)
+
+
+def test_seeds_give_different_policies():
+    runs = stack([task(seed=0), task(seed=1)])
+    weights = training.begin(runs, SMALL).state.average.network.weights[0]
+    assert not np.allclose(weights[0], weights[1])
+
+
+def test_too_few_days_and_odd_iterations_are_refused_with_the_cure():
+    with pytest.raises(HemmaError, match="demonstrate more days"):
+        task(days=1, settings=dataclasses.replace(SMALL, ppo=PPOSettings(slots=48)))
+    with pytest.raises(HemmaError, match="multiple of 25, got 30; try 25"):
+        training.begin(stack([task()]), dataclasses.replace(SMALL, iterations=30))
+
+
+def test_a_diverged_run_is_named():
+    runs = stack([task(seed=3), task(seed=8)])
+    poisoned = eqx.tree_at(
+        lambda t: t.expert.transitions.features, runs, runs.expert.transitions.features.at[1].set(math.nan)
+    )
+    with pytest.raises(HemmaError, match=r"seeds \[8\]"):
+        training.train(poisoned, SMALL)
+
+
+@pytest.mark.slow
+def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw():
+    """A rule on price and weather, on days the learner never saw: same battery direction, close HVAC power."""
+    settings = AIRLSettings(iterations=250, ppo=PPOSettings(rollouts=32, slots=24))
+    runs = stack([task(settings=settings)])
+    trained = training.train(runs, settings)
+    controller = jax.tree.map(lambda x: x[0], training.controllers(trained, runs))
+    unseen = demonstrate(Home(), traces(4, seed=9), price_rule)
+    acted = demonstrate(Home(), traces(4, seed=9), lambda o: controller(o, jax.random.key(0)))
+    same = jnp.abs(acted.actions[:, 0] - unseen.actions[:, 0]) < 0.75
+    assert float(same.mean()) > 0.8
+    assert float(jnp.abs(acted.actions[:, 1] - unseen.actions[:, 1]).mean()) < 0.15
