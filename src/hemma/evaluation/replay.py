@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from hemma.home import Controller, Home, Trajectory, replay
+from hemma.home.precision import in_double
 from hemma.types import Array, Exogenous
 
 
@@ -54,7 +54,7 @@ def evaluate(
     because perfect information knows none either. Compiled once for each kind of controller.
     """
     with jax.enable_x64(True):
-        inputs = _in_double((home, exogenous, controller, key, disturbance_deviation))
+        inputs = in_double((home, exogenous, controller, key, disturbance_deviation))
         return _outcome(_replayed(*inputs), ())
 
 
@@ -64,19 +64,9 @@ def evaluate_stacked(
     """Like ``evaluate`` for one controller a seed: every array of ``controllers`` and ``keys`` is stacked
     along its first axis, and one compiled call runs all of them."""
     with jax.enable_x64(True):
-        inputs = _in_double((home, exogenous, controllers, keys, disturbance_deviation))
+        inputs = in_double((home, exogenous, controllers, keys, disturbance_deviation))
         trajectories = _replayed_stacked(*inputs)
         return tuple(_outcome(trajectories, (seed,)) for seed in range(len(keys)))
-
-
-def _in_double(tree: tuple) -> tuple:
-    """Every number of the tree as an array of float64, so that other values need no new compilation."""
-
-    def double(leaf):
-        number = isinstance(leaf, float) or eqx.is_inexact_array_like(leaf)
-        return jnp.asarray(leaf, float) if number else leaf
-
-    return jax.tree.map(double, tree)
 
 
 def _run(
