@@ -64,9 +64,9 @@ def price_rule(observation):
     return Action(power, jnp.clip((observation.outdoor_temperature - 24) / 10, 0.0, 2.0))
 
 
-def task(seed=0, days=5, settings=SMALL):
+def task(seed=0, days=5):
     home, exogenous = Home(), traces(days)
-    return make_task(home, exogenous, demonstrate(home, exogenous, price_rule), seed, settings.ppo.slots)
+    return make_task(home, exogenous, demonstrate(home, exogenous, price_rule), seed)
 
 
 def transitions(samples, seed=0):
@@ -132,18 +132,28 @@ def test_gradient_penalty_is_zero_for_a_flat_reward_and_grows_with_slope():
 
 
 def test_deviation_shrinks_geometrically_and_then_stays():
-    settings = AIRLSettings(iterations=100, first_deviation=(0.4, 0.2), last_deviation=(0.1, 0.2), shrinking=0.5)
+    settings = AIRLSettings(
+        iterations=100, first_deviation=(0.4, 0.2), last_deviation=(0.1, 0.2), shrinking=0.5
+    )
     np.testing.assert_allclose(deviation_at(jnp.asarray(0), settings), [0.4, 0.2], rtol=1e-6)
     np.testing.assert_allclose(deviation_at(jnp.asarray(25), settings), [0.2, 0.2], rtol=1e-6)
     np.testing.assert_allclose(deviation_at(jnp.asarray(90), settings), [0.1, 0.2], rtol=1e-6)
 
 
-def test_padding_a_task_changes_nothing():
-    """A run of 3 days trains to the same weights alone and beside a run of 5 days."""
-    alone = training.train(stack([task(days=3)]), SMALL)
-    beside = training.train(stack([task(days=3), task(seed=1, days=5)]), SMALL)
-    for a, b in zip(jax.tree.leaves(alone.state.average), jax.tree.leaves(beside.state.average), strict=True):
-        np.testing.assert_allclose(a[0], b[0], rtol=1e-3, atol=1e-4)
+def test_padding_is_never_read():
+    """A run of 3 days beside one of 5 days trains the same whatever lies behind its third day."""
+    runs = stack([task(seed=0, days=3), task(seed=1, days=5)])
+    poisoned = eqx.tree_at(
+        lambda t: (t.environment.exogenous, t.expert.transitions),
+        runs,
+        (
+            jax.tree.map(lambda x: x.at[0, 72:].set(math.nan), runs.environment.exogenous),
+            jax.tree.map(lambda x: x.at[0, 71:].set(math.nan), runs.expert.transitions),
+        ),
+    )
+    clean, other = (training.advance(training.begin(r, SMALL), r, SMALL) for r in (runs, poisoned))
+    for a, b in zip(jax.tree.leaves(clean.state.average), jax.tree.leaves(other.state.average), strict=True):
+        np.testing.assert_array_equal(a, b)
 
 
 def test_training_goes_on_from_a_file_to_the_same_result(tmp_path):
@@ -164,9 +174,9 @@ def test_seeds_give_different_policies():
     assert not np.allclose(weights[0], weights[1])
 
 
-def test_too_few_days_and_odd_iterations_are_refused_with_the_cure():
-    with pytest.raises(HemmaError, match="demonstrate more days"):
-        task(days=1, settings=dataclasses.replace(SMALL, ppo=PPOSettings(slots=48)))
+def test_foreign_days_and_odd_iterations_are_refused_with_the_cure():
+    with pytest.raises(HemmaError, match="expected 47 transitions for traces of 48 slots, got 71"):
+        make_task(Home(), traces(2), demonstrate(Home(), traces(3), price_rule), 0)
     with pytest.raises(HemmaError, match="multiple of 25, got 30; try 25"):
         training.begin(stack([task()]), dataclasses.replace(SMALL, iterations=30))
 
@@ -182,9 +192,9 @@ def test_a_diverged_run_is_named():
 
 @pytest.mark.slow
 def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw():
-    """A rule on price and weather, on days the learner never saw: same battery direction, close HVAC power."""
+    """A rule on price and weather, on days the learner never saw: same battery and HVAC power."""
     settings = AIRLSettings(iterations=250, ppo=PPOSettings(rollouts=32, slots=24))
-    runs = stack([task(settings=settings)])
+    runs = stack([task()])
     trained = training.train(runs, settings)
     controller = jax.tree.map(lambda x: x[0], training.controllers(trained, runs))
     unseen = demonstrate(Home(), traces(4, seed=9), price_rule)

@@ -39,16 +39,15 @@ class Task(eqx.Module):
     seed: Int[Array, "*runs"]
 
 
-def make_task(home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed: int, slots: int) -> Task:
+def make_task(home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed: int) -> Task:
     """The task of learning from ``demonstrated`` and the traces ``exogenous`` of the same days, nothing else.
 
-    The scaler is fitted to the demonstrated states. ``slots`` is the length of the learner's rollouts: the
-    traces must be longer.
+    The scaler is fitted to the demonstrated states.
     """
-    if exogenous.slots <= slots + 1:
+    if len(demonstrated.actions) != exogenous.slots - 1:
         raise HemmaError(
-            f"demonstrations: expected more than {slots + 1} slots for rollouts of {slots} slots, got "
-            f"{exogenous.slots}; demonstrate more days or set shorter rollouts (airl.ppo.slots)"
+            f"demonstrations: expected {exogenous.slots - 1} transitions for traces of {exogenous.slots} "
+            f"slots, got {len(demonstrated.actions)}; demonstrate and train on the same days"
         )
     scaler = fit_scaler(np.asarray(demonstrated.states))
     actions = Action(*jnp.asarray(demonstrated.actions, float).T)

@@ -33,7 +33,11 @@ class Rollout(eqx.Module):
 
 
 class Environment(eqx.Module):
-    """A home and the traces it replays, seen through a scaler. It never terminates."""
+    """A home and the traces it replays, seen through a scaler.
+
+    It never terminates: after the last slot of the traces comes the first. Replay whole days, so that the
+    clock goes on where it was.
+    """
 
     home: Home
     exogenous: Exogenous
@@ -41,21 +45,25 @@ class Environment(eqx.Module):
     """How many slots of ``exogenous`` may be replayed; what lies behind them is padding and never read."""
     scaler: StateScaler
 
-    def reset(self, key: Array, slots: int) -> tuple[HomeState, Array]:
-        """A random first slot (``slots`` more must follow it), battery level and indoor temperature.
+    def reset(self, key: Array) -> tuple[HomeState, Array]:
+        """A random first slot of the traces, battery level and indoor temperature.
 
         E is uniform over the battery's range; T_in is uniform over the comfort band and one degree beyond.
         """
         start_key, energy_key, temperature_key = jax.random.split(key, 3)
-        start = jax.random.randint(start_key, (), 0, self.available - slots)
+        start = jax.random.randint(start_key, (), 0, self.available)
         battery, comfort = self.home.battery, self.home.comfort
         energy = jax.random.uniform(energy_key, minval=battery.min_energy, maxval=battery.max_energy)
         temperature = jax.random.uniform(temperature_key, minval=comfort.low - 1, maxval=comfort.high + 1)
         return self.home.reset(energy, temperature), start
 
+    def at(self, slot: Array) -> Exogenous:
+        """Exogenous values of a slot, counted on beyond the last one."""
+        return jax.tree.map(lambda x: x[slot % self.available], self.exogenous)
+
     def features(self, state: HomeState, slot: Array) -> Float[Array, "features"]:
-        """The scaled state of the paper when the home stands at the start of ``slot`` of the traces."""
-        return self.scaler(paper_state(observe(state, jax.tree.map(lambda x: x[slot], self.exogenous))))
+        """The scaled state of the paper when the home stands at the start of ``slot``."""
+        return self.scaler(paper_state(observe(state, self.at(slot))))
 
 
 def collect(
@@ -68,18 +76,17 @@ def collect(
     """Let the policy act with standard ``deviation`` of its fractions; ``shape`` is (slots, rollouts)."""
     slots, rollouts = shape
     reset_key, noise_key, disturbance_key = jax.random.split(key, 3)
-    states, starts = jax.vmap(lambda k: environment.reset(k, slots))(jax.random.split(reset_key, rollouts))
+    states, starts = jax.vmap(environment.reset)(jax.random.split(reset_key, rollouts))
     noise = jax.random.normal(noise_key, (slots, rollouts, deviation.size)) * deviation
     keys = jax.random.split(disturbance_key, rollouts)
     disturbances = jax.vmap(lambda k: environment.home.disturbances(k, slots))(keys).T
 
     def act(state: HomeState, start: Array, features: Array, noise: Array, disturbance: Array):
         slot = start + state.slot
-        now = jax.tree.map(lambda x: x[slot], environment.exogenous)
         mean = policy.mean(features)
         fractions = mean + noise
         action = to_power(environment.home, state.battery_energy, fractions)
-        step = environment.home.step(state, now, action, disturbance)
+        step = environment.home.step(state, environment.at(slot), action, disturbance)
         after = environment.features(step.state, slot + 1)
         density = log_density(fractions, mean, deviation)
         return step.state, Rollout(Transitions(features, fractions, after), density, step.costs)
