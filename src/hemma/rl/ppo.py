@@ -24,7 +24,7 @@ class PPOSettings:
     slots: int = 48
     discount: float = 0.95
     """gamma."""
-    trace: float = 0.9
+    trace: float = 0.95
     """lambda of the generalised advantage estimate."""
     clip: float = 0.2
     epochs: int = 3
