@@ -1,11 +1,52 @@
 """The canonical trace file: CSV, one row a slot, start of slot, ISO 8601 with offset."""
 
+import gzip
+from pathlib import Path
+
 import numpy as np
 
+from hemma.checkpoint import write_atomically
+from hemma.data.clock import regular_clock
+from hemma.data.csv_table import parse_table
+from hemma.data.source_file import read_source, stem
 from hemma.data.traces import Traces
+from hemma.data.validation import Columns, Log, Repairs, validated
+from hemma.errors import HemmaError
 
 REQUIRED = ("time", "pv_kw", "load_kw", "outdoor_c", "buy_per_kwh")
 OPTIONAL = ("sell_per_kwh", "indoor_c", "hvac_kw")
+
+
+def read_canonical(
+    path: str | Path, *, selling_ratio: float = 0.9, name: str | None = None, longest_gap: float = 1.0
+) -> Traces:
+    """Read a canonical trace file, ``.csv`` or ``.csv.gz``.
+
+    ``selling_ratio`` stands in for a missing ``sell_per_kwh``. Holes of at most ``longest_gap`` [h] are
+    interpolated; that and every other repair stands in the ``notes`` of the traces. Any slot length; two
+    offsets (daylight saving) are accepted. Errors: HemmaError with file, line, column, time and cure.
+    """
+    file = read_source(Path(path))
+    table = parse_table(file, REQUIRED, OPTIONAL)
+    placement = regular_clock(table.stamps("time"), str(path))
+    columns = {column: placement.placed(table.numbers(column)) for column in table.header if column != "time"}
+    log = Log(
+        name=name or stem(file.path),
+        file=str(path),
+        clock=placement.clock,
+        columns=Columns(**columns),
+        sha256=file.sha256,
+        source=f"Traces of the file {file.path.name}, as its owner recorded them.",
+    )
+    return validated(log, Repairs(longest_gap=longest_gap, selling_ratio=selling_ratio))
+
+
+def write_canonical(traces: Traces, path: str | Path) -> None:
+    """Write a canonical trace file, ``.csv`` or ``.csv.gz``; ``read_canonical`` reads the same back."""
+    path, content = Path(path), canonical_text(traces).encode()
+    if not path.name.endswith((".csv", ".csv.gz")):
+        raise HemmaError(f"{path}: expected a file name that ends in .csv or .csv.gz. Rename it")
+    write_atomically(path, gzip.compress(content, mtime=0) if path.suffix == ".gz" else content)
 
 
 def canonical_text(traces: Traces) -> str:

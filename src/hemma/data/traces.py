@@ -1,6 +1,7 @@
 """Traces: what a home saw, slot by slot, and its split into a training and a test period."""
 
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -140,10 +141,10 @@ def _first_test_slot(traces: Traces, test_from: str | None) -> int:
         end = wall[-1] + pd.Timedelta(hours=traces.slot_length)
         return int(np.sum(wall < end - pd.Timedelta(days=TEST_DAYS)))
     try:
-        moment = pd.Timestamp(test_from)
+        moment = datetime.fromisoformat(test_from)
     except ValueError as error:
         raise HemmaError(
             f"--test-from: expected a day or a time such as 2021-08-01 or 2021-08-01T00:00:00-06:00, "
             f"got {test_from!r}. Correct it"
         ) from error
-    return int(np.sum((wall if moment.tzinfo is None else traces.time) < moment))
+    return int(np.sum((wall if moment.tzinfo is None else traces.time) < pd.Timestamp(moment)))

@@ -1,0 +1,157 @@
+"""Time stamps, and the regular clock they stand on. Daylight saving time is handled here and nowhere else."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta, timezone
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hemma.errors import HemmaError
+
+if TYPE_CHECKING:
+    import pandas
+
+MOST_SLOTS_PER_ROW = 10
+"""A file whose span has more slots than this per row has a wrong time stamp rather than holes."""
+
+
+@dataclass(frozen=True)
+class Stamps:
+    """The time stamps of a file's rows."""
+
+    seconds: Int[np.ndarray, "rows"]
+    """Moment, in seconds since 1970-01-01T00:00:00Z."""
+    offset: Float[np.ndarray, "rows"]
+    """Wall clock minus UTC [h]."""
+    places: Sequence[str]
+    """Where each row stands, such as ``line 12``."""
+
+    def text(self, row: int) -> str:
+        """ISO 8601 with the offset."""
+        return iso_text(int(self.seconds[row]), float(self.offset[row]))
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Regular slots and their wall clock."""
+
+    start: int
+    """Start of the first slot [s since 1970-01-01T00:00:00Z]."""
+    step: int
+    """Length of a slot [s]."""
+    offset: Float[np.ndarray, "slots"]
+    """Wall clock minus UTC [h]."""
+
+    @property
+    def slots(self) -> int:
+        """Number of slots."""
+        return len(self.offset)
+
+    @property
+    def slot_length(self) -> float:
+        """dt [h]."""
+        return self.step / 3600
+
+    @property
+    def seconds(self) -> Int[np.ndarray, "slots"]:
+        """Start of each slot [s since 1970-01-01T00:00:00Z]."""
+        return self.start + self.step * np.arange(self.slots, dtype=np.int64)
+
+    def hour_of_day(self) -> Float[np.ndarray, "slots"]:
+        """Local wall clock hour at the start of each slot, in [0, 24)."""
+        wall = self.seconds + np.round(self.offset * 3600).astype(np.int64)
+        return (wall % 86400) / 3600
+
+    def text(self, slot: int) -> str:
+        """Start of a slot, ISO 8601 with the offset; the slot after the last is the end."""
+        offset = float(self.offset[min(slot, self.slots - 1)])
+        return iso_text(self.start + slot * self.step, offset)
+
+    def index(self) -> "pandas.DatetimeIndex":
+        """The slots as pandas knows them: in their offset if there is one, in UTC if it changes."""
+        import pandas as pd
+
+        first = datetime.fromtimestamp(self.start, UTC)
+        index = pd.date_range(first, periods=self.slots, freq=pd.Timedelta(seconds=self.step))
+        if self.changes_offset():
+            return index
+        return index.tz_convert(timezone(timedelta(hours=float(self.offset[0]))))
+
+    def changes_offset(self) -> bool:
+        """Whether the wall clock is changed on the way."""
+        return bool((self.offset != self.offset[0]).any())
+
+    def window(self, start: int, stop: int) -> "Clock":
+        """The slots from ``start`` (included) to ``stop`` (excluded)."""
+        return Clock(self.start + start * self.step, self.step, self.offset[start:stop])
+
+
+@dataclass(frozen=True)
+class Placement:
+    """The regular clock of a file, and the slot of each of its rows."""
+
+    clock: Clock
+    slot: Int[np.ndarray, "rows"]
+
+    def placed(self, values: Float[np.ndarray, "rows"]) -> Float[np.ndarray, "slots"]:
+        """The values of the rows in their slots, NaN in slots that have no row."""
+        series = np.full(self.clock.slots, np.nan)
+        series[self.slot] = values
+        return series
+
+
+def regular_clock(stamps: Stamps, name: str) -> Placement:
+    """The regular clock on which the rows of the file ``name`` stand, in order, each slot at most once."""
+    if len(stamps.seconds) < 2:
+        raise HemmaError(f"{name}: expected at least two rows, got {len(stamps.seconds)}")
+    steps = np.diff(stamps.seconds)
+    _check_order(stamps, steps, name)
+    lengths, counts = np.unique(steps, return_counts=True)
+    step = int(lengths[np.argmax(counts)])
+    _check_regularity(stamps, steps % step != 0, step, name)
+    slot = (stamps.seconds - stamps.seconds[0]) // step
+    slots = int(slot[-1]) + 1
+    if slots > MOST_SLOTS_PER_ROW * (len(slot) + 10):
+        raise HemmaError(
+            f"{name}: expected about one row every {step / 3600:g} h, got {len(slot)} rows between "
+            f"{stamps.text(0)} and {stamps.text(-1)}. Correct the time stamps"
+        )
+    latest_row = np.maximum.accumulate(np.bincount(slot, np.arange(len(slot)), slots).astype(int))
+    offset = stamps.offset[latest_row]
+    if len(set(offset.tolist())) > 2:
+        raise HemmaError(
+            f"{name}: expected at most two offsets from UTC, standard and daylight saving time, got "
+            f"{', '.join(f'{x:+g} h' for x in sorted(set(offset.tolist())))}. Correct the time stamps"
+        )
+    return Placement(Clock(int(stamps.seconds[0]), step, offset), slot)
+
+
+def _check_order(stamps: Stamps, steps: Int[np.ndarray, "steps"], name: str) -> None:
+    bad = np.flatnonzero(steps <= 0)
+    if not len(bad):
+        return
+    row = int(bad[0]) + 1
+    what = "is there twice" if steps[bad[0]] == 0 else f"comes after {stamps.text(row - 1)}"
+    raise HemmaError(
+        f"{name}, {stamps.places[row]}: expected time stamps in increasing order, each once, but "
+        f"{stamps.text(row)} {what} ({len(bad)} such rows). Sort the rows and take the doubles out"
+    )
+
+
+def _check_regularity(stamps: Stamps, irregular: np.ndarray, step: int, name: str) -> None:
+    if not irregular.any():
+        return
+    row = int(np.argmax(irregular)) + 1
+    raise HemmaError(
+        f"{name}, {stamps.places[row]}: expected slots of one length, mostly {step / 60:g} minutes, but "
+        f"{stamps.text(row)} follows {stamps.text(row - 1)} ({int(irregular.sum())} such rows). "
+        "Bring the rows to a regular clock"
+    )
+
+
+def iso_text(seconds: int, offset: float) -> str:
+    """ISO 8601 of a moment [s since 1970-01-01T00:00:00Z] on a wall clock ``offset`` [h] ahead of UTC."""
+    zone = timezone(timedelta(hours=offset))
+    return datetime.fromtimestamp(seconds, UTC).astimezone(zone).isoformat()
