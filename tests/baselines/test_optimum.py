@@ -143,7 +143,7 @@ def test_optimum_is_that_of_a_dense_linear_programme(kind, extra):
 @pytest.mark.parametrize("ratio", [0.9, 1.3])
 def test_optimum_with_negative_prices_or_dear_sales_is_that_of_binaries_everywhere(ratio):
     home = Home(battery=Battery(charging_efficiency=0.85))
-    exogenous = traces(24, 2, negative_share=0.3 if ratio < 1 else 0.0)
+    exogenous = traces(16, 2, negative_share=0.3 if ratio < 1 else 0.0)
     exogenous = eqx.tree_at(lambda x: x.selling_price, exogenous, ratio * exogenous.buying_price)
     problem = optimum_problem(home, exogenous)
     for budget in (0.0, 3.0):
@@ -176,7 +176,7 @@ def test_a_model_that_is_not_affine_is_refused():
         optimum_problem(Home(thermal_model=Saturating()), traces(24, 0))
 
 
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(seed=st.integers(0, 1000), heats=st.booleans(), negative=st.sampled_from([0.0, 0.2]))
 def test_no_controller_beats_the_bound_and_more_budget_never_costs_more(seed, heats, negative):
     home = Home(hvac=Hvac(heats=heats))
@@ -202,7 +202,7 @@ def test_no_controller_beats_the_bound_and_more_budget_never_costs_more(seed, he
 
 
 def test_actions_cost_on_the_home_what_the_optimum_says():
-    home, exogenous = Home(), traces(240, 7, negative_share=0.1)
+    home, exogenous = Home(), traces(120, 7, negative_share=0.1)
     found = optimum_problem(home, exogenous).solve(5.0)
     with jax.enable_x64(True):
         path = replay(home, exogenous, Schedule(found.actions), home.reset(), jax.random.key(0))

@@ -96,13 +96,17 @@ def test_comfort_law_is_the_smallest_power_that_reaches_the_band(temperature, ou
         assert float(h) == 0 or violation(h - 1e-3) > 1e-3  # a little less would not do
 
 
-def test_hvac_without_effect_stays_off():
-    class Insulated(ExplicitThermalModel):
+@pytest.mark.parametrize("effect", [0.0, -1.0])
+@pytest.mark.parametrize("temperature", [15.0, 30.0])
+def test_hvac_without_effect_or_with_the_wrong_one_stays_off(effect, temperature):
+    class Odd(ExplicitThermalModel):
         def __call__(self, state, drivers):
-            return state
+            return super().__call__(
+                state, eqx.tree_at(lambda d: d.cooling_power, drivers, effect * drivers.cooling_power)
+            )
 
-    home = Home(thermal_model=Insulated())
-    assert float(observed_comfort_power(home, observation(30.0))) == 0.0
+    home = Home(thermal_model=Odd())
+    assert float(observed_comfort_power(home, observation(temperature))) == 0.0
 
 
 @pytest.mark.parametrize("heats", [False, True])

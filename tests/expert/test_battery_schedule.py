@@ -159,8 +159,8 @@ def test_free_prices_and_no_ageing_leave_no_round_trips():
 def test_short_horizons_cost_more_and_the_gap_says_how_much():
     home, exogenous, h = Home(), traces(96, 5), np.full(96, 0.8)
     whole = schedule_battery(home, exogenous, h, start(home))
-    blind = schedule_battery(home, exogenous, h, start(home), Horizon(4, 4))
-    rolling = schedule_battery(home, exogenous, h, start(home), Horizon(8, 2))
+    blind = schedule_battery(home, exogenous, h, start(home), Horizon(4.0, 4.0))
+    rolling = schedule_battery(home, exogenous, h, start(home), Horizon(8.0, 2.0))
     assert whole.cost < rolling.cost < blind.cost
     assert whole.gap <= 1e-6
     assert blind.gap == pytest.approx((blind.cost - whole.bound) / abs(blind.cost), rel=1e-6)
@@ -186,17 +186,24 @@ def test_no_time_left_is_said():
         schedule_battery(home, exogenous, np.ones(400), start(home), solver=SolverSettings(time_limit=0.0))
 
 
-@pytest.mark.parametrize(("slots", "advance"), [(0, None), (4, 5), (4, 0)])
-def test_horizons_that_never_arrive_are_refused(slots, advance):
+@pytest.mark.parametrize(("planned", "carried_out"), [(0.0, None), (4.0, 5.0), (4.0, 0.0), (-1.0, None)])
+def test_horizons_that_never_arrive_are_refused(planned, carried_out):
     with pytest.raises(HemmaError, match="horizon"):
-        Horizon(slots, advance)
+        Horizon(planned, carried_out)
 
 
 @given(
-    total=st.integers(0, 60),
-    slots=st.one_of(st.none(), st.integers(5, 30)),
-    advance=st.one_of(st.none(), st.integers(1, 5)),
+    slots=st.integers(0, 60),
+    planned=st.one_of(st.none(), st.floats(5, 30)),
+    carried_out=st.one_of(st.none(), st.floats(0.1, 5)),
+    slot_length=st.sampled_from([0.25, 0.5, 1.0]),
 )
-def test_windows_carry_out_every_slot_once(total, slots, advance):
-    done = [t for w in Horizon(slots, advance).windows(total) for t in range(w.start, w.stop)]
-    assert done == list(range(total))
+def test_windows_carry_out_every_slot_once(slots, planned, carried_out, slot_length):
+    windows = list(Horizon(planned, carried_out).windows(slots, slot_length))
+    assert [t for w in windows for t in range(w.start, w.stop)] == list(range(slots))
+    if planned is not None:
+        assert all(w.end - w.start <= planned / slot_length + 0.5 for w in windows)
+
+
+def test_a_day_is_a_day_at_any_slot_length():
+    assert [w.stop for w in Horizon(48.0, 24.0).windows(192, 0.25)] == [96, 192]

@@ -63,7 +63,7 @@ def schedule_battery(
     """
     home, exogenous, hvac_power = in_numpy((home, exogenous, hvac_power))
     energy, powers, plans = float(initial.battery_energy), [], []
-    for window in horizon.windows(exogenous.slots):
+    for window in horizon.windows(exogenous.slots, float(home.slot_length)):
         ahead = slice(window.start, window.end)
         part = exogenous.window(window.start, window.end)
         plan = _plan(home, part, hvac_power[ahead], energy, solver)

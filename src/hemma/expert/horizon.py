@@ -17,33 +17,44 @@ class Window:
 
 @dataclass(frozen=True)
 class Horizon:
-    """Plan ``slots`` slots, carry out ``advance`` of them, plan again. Without numbers: all in one plan."""
+    """Plan ``planned`` hours, carry out ``carried_out`` of them, plan again."""
 
-    slots: int | None = None
-    """Slots planned; None for all that are left."""
-    advance: int | None = None
-    """Slots carried out of each plan; None for all that were planned."""
+    planned: float | None = None
+    """How far a plan looks ahead [h]; None for all that is left."""
+    carried_out: float | None = None
+    """How much of a plan is carried out before the next one [h]; None for all that was planned."""
 
     def __post_init__(self):
         """Refuse horizons that never arrive."""
-        for name, value in (("slots", self.slots), ("advance", self.advance)):
-            if value is not None and value < 1:
-                raise HemmaError(f"horizon: expected {name} >= 1, got {value}; correct this setting")
-        if self.slots is not None and self.advance is not None and self.advance > self.slots:
+        for name, value in (("planned", self.planned), ("carried_out", self.carried_out)):
+            if value is not None and not value > 0:
+                raise HemmaError(f"horizon: expected {name} > 0 hours, got {value}; correct this setting")
+        if self.planned is not None and self.carried_out is not None and self.carried_out > self.planned:
             raise HemmaError(
-                f"horizon: expected advance <= slots, got {self.advance} > {self.slots}; plan at least as "
-                "many slots as are carried out"
+                f"horizon: expected carried_out <= planned, got {self.carried_out} > {self.planned} hours; "
+                "plan at least as far as is carried out"
             )
 
-    def windows(self, slots: int) -> Iterator[Window]:
-        """The plans that cover a period of ``slots`` slots; those near its end are shorter."""
+    def windows(self, slots: int, slot_length: float) -> Iterator[Window]:
+        """The plans that cover ``slots`` slots of ``slot_length`` [h]; those near the end are shorter.
+
+        Hours are rounded to whole slots, at least one.
+        """
+        planned = _slots(self.planned, slot_length, slots)
+        carried_out = min(_slots(self.carried_out, slot_length, planned), planned)
         start = 0
         while start < slots:
-            end = slots if self.slots is None else min(start + self.slots, slots)
-            stop = end if self.advance is None else min(start + self.advance, end)
+            end = min(start + planned, slots)
+            stop = min(start + carried_out, end)
             yield Window(start=start, stop=stop, end=end)
             start = stop
 
 
+def _slots(hours: float | None, slot_length: float, otherwise: int) -> int:
+    return otherwise if hours is None else max(round(hours / slot_length), 1)
+
+
 WHOLE_PERIOD = Horizon()
 """Everything in one plan, as hindsight allows."""
+EVERY_DAY = Horizon(planned=48.0, carried_out=24.0)
+"""Two days planned at every midnight: a day of foresight left when the next plan begins."""

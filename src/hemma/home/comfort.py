@@ -29,7 +29,8 @@ def comfort_power(home: Home, thermal: ThermalState, exogenous: Exogenous) -> Ar
     idle = jnp.zeros_like(thermal.indoor_temperature)
     temperature, slope = jax.jvp(temperature_after, (idle,), (jnp.ones_like(idle),))
     target = home.comfort.low if home.hvac.heats else home.comfort.high
-    needed = jnp.where(slope == 0, 0.0, (target - temperature) / jnp.where(slope == 0, 1.0, slope))
+    works = slope > 0 if home.hvac.heats else slope < 0
+    needed = jnp.where(works, (target - temperature) / jnp.where(works, slope, 1.0), 0.0)
     return jnp.clip(needed, 0.0, home.hvac.max_power)
 
 

@@ -2,7 +2,6 @@
 
 from typing import TypeVar
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -15,7 +14,6 @@ def in_double(tree: Tree) -> Tree:
 
     Call it inside ``with jax.enable_x64(True)``. Integers, keys and anything else stay as they are.
     """
-
     return jax.tree.map(lambda leaf: jnp.asarray(leaf, float) if _is_number(leaf) else leaf, tree)
 
 
@@ -25,4 +23,5 @@ def in_numpy(tree: Tree) -> Tree:
 
 
 def _is_number(leaf: object) -> bool:
-    return isinstance(leaf, float) or eqx.is_inexact_array_like(leaf)
+    array = isinstance(leaf, jax.Array | np.ndarray | np.generic)
+    return isinstance(leaf, float) or (array and jnp.issubdtype(leaf.dtype, jnp.floating))
