@@ -1,0 +1,120 @@
+"""The methods: in what order they stand, how they look in every figure, and what they are in plain words."""
+
+import zlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+BLACK, GREY = "#000000", "#8A8A8A"
+ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE = (
+    "#E69F00",
+    "#56B4E9",
+    "#009E73",
+    "#0072B2",
+    "#D55E00",
+    "#CC79A7",
+)
+"""The palette of Okabe and Ito (2008), which people with any common colour blindness can tell apart."""
+
+DASHED, DOTTED, MIXED = (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1.2, 1.5))
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a method looks, the same in every figure: no two methods share both colour and line."""
+
+    colour: str
+    line: str | tuple = "-"
+    marker: str = "o"
+
+
+@dataclass(frozen=True)
+class Group:
+    """Methods that may know the same things."""
+
+    title: str
+    methods: tuple[str, ...]
+
+
+GROUPS = (
+    Group("Learned from demonstrations", ("HA-1", "HA-2", "AIRL", "GAIL", "MaxEnt IRL", "BC")),
+    Group("Learned from a hand-written reward", ("PPO", "DDPG")),
+    Group(
+        "Not learned",
+        ("MPC forecast", "MPC hourly means", "MPC yesterday", "thresholds", "Rule", "no battery"),
+    ),
+    Group("Knows the future", ("MPC perfect", "HMPC", "DNLP", "optimum")),
+)
+OTHERS = "Others"
+
+_LOOKS = {
+    "HA-1": Look(BLUE, "-", "o"),
+    "HA-2": Look(SKY, DASHED, "s"),
+    "AIRL": Look(BLUE, "-", "o"),
+    "GAIL": Look(GREEN, DASHED, "s"),
+    "MaxEnt IRL": Look(GREEN, DOTTED, "v"),
+    "BC": Look(PURPLE, MIXED, "^"),
+    "PPO": Look(ORANGE, MIXED, "D"),
+    "DDPG": Look(ORANGE, DOTTED, "v"),
+    "default": Look(SKY, "-", "P"),
+    "MPC forecast": Look(GREY, "-", "o"),
+    "MPC hourly means": Look(GREY, DASHED, "s"),
+    "MPC yesterday": Look(GREY, DOTTED, "^"),
+    "thresholds": Look(PURPLE, DOTTED, "D"),
+    "Rule": Look(VERMILLION, DASHED, "X"),
+    "no battery": Look(VERMILLION, DOTTED, "P"),
+    "MPC perfect": Look(GREY, MIXED, "v"),
+    "HMPC": Look(BLACK, DASHED, "s"),
+    "DNLP": Look(BLACK, MIXED, "D"),
+    "optimum": Look(BLACK, DOTTED, "*"),
+}
+"""AIRL is HA-1 and HA-2 at any demonstration length, so it wears the colour of HA-1."""
+
+_UNKNOWN = tuple(Look(colour, DASHED, "h") for colour in (PURPLE, SKY, VERMILLION, GREEN, BLUE, ORANGE))
+
+MEANINGS = {
+    "HA-1": "HMPC-assisted adversarial inverse reinforcement learning, the shorter demonstrations",
+    "HA-2": "the same method with the longer demonstrations",
+    "AIRL": "the method of HA-1 and HA-2 at other demonstration lengths",
+    "GAIL": "generative adversarial imitation of demonstrations, without a reward to keep",
+    "MaxEnt IRL": "maximum-entropy inverse reinforcement learning from demonstrations",
+    "BC": "behavioural cloning: a regression from states to the demonstrated actions",
+    "PPO": "reinforcement learning on the hand-written reward −(X1 + X2) − β·X3, on policy",
+    "DDPG": "reinforcement learning on the same hand-written reward, off policy",
+    "default": "the controller that Hemma uses unless told otherwise",
+    "MPC forecast": "plans again in every slot, with a forecast fitted on the training period",
+    "MPC hourly means": "plans again in every slot, expecting the mean of each hour of the day",
+    "MPC yesterday": "plans again in every slot, expecting yesterday once more",
+    "thresholds": "charges below one price and discharges above another, both fitted on the training period",
+    "Rule": "a thermostat with hysteresis; the battery rests",
+    "no battery": "holds the temperature at the edge of comfort; there is no battery",
+    "MPC perfect": "plans again in every slot and knows the next hours exactly",
+    "HMPC": "the expert: the two-level optimiser in hindsight, with the identified network as its model",
+    "DNLP": "discontinuous nonlinear programme over the whole period, a local optimum in hindsight",
+    "optimum": "the proven least cost in hindsight, with the least deviation that is possible",
+}
+
+
+def in_order(methods: Iterable[str]) -> list[str]:
+    """Method names in the order of the groups; those that no group knows come last, as they came."""
+    known = [name for group in GROUPS for name in group.methods]
+    present = list(methods)
+    return [name for name in known if name in present] + [name for name in present if name not in known]
+
+
+def look_of(method: str) -> Look:
+    """How a method is drawn; one that is not known here gets a look that depends on its name alone."""
+    if method in _LOOKS:
+        return _LOOKS[method]
+    return _UNKNOWN[zlib.crc32(method.encode()) % len(_UNKNOWN)]
+
+
+def main_method(methods: Iterable[str]) -> str:
+    """The method that the report speaks of: HA-1, else the first in order."""
+    return in_order(methods)[0]
+
+
+def shown_over_time(methods: Iterable[str]) -> list[str]:
+    """At most four methods whose lines can be told apart in one panel."""
+    present = list(methods)
+    wanted = dict.fromkeys((main_method(present), "Rule", "PPO", "optimum"))
+    return in_order(name for name in wanted if name in present)
