@@ -98,7 +98,7 @@ class Home(eqx.Module):
         )
 
     def reset(
-        self, battery_energy: Array | None = None, indoor_temperature: Array | None = None
+        self, battery_energy: Scalar | None = None, indoor_temperature: Scalar | None = None
     ) -> HomeState:
         """State at slot 0, from the home's own initial values unless others are given."""
         energy = self.battery.initial_energy if battery_energy is None else battery_energy
