@@ -92,7 +92,7 @@ def _reading_section(results: Results) -> str:
 
 def _settings_section(results: Results) -> str:
     rows = [row(name, [cell(value, style="text")]) for name, value in _flattened("", results.settings)]
-    settings = table("Settings as stored with the results.", ("Setting", "Value"), [body(rows)])
+    settings = table("Settings", ("Setting", "Value"), [body(rows)])
     return (
         heading(2, "Settings, and how to get this again")
         + (settings if rows else paragraph("No settings are stored with these results."))

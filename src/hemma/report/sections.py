@@ -52,10 +52,7 @@ def _method_table(home: HomeResults, rows: list[TableRow]) -> str:
         for title, entries in grouped.items()
         if entries
     ]
-    caption = (
-        "Mean over the seeds, below it the 95 % interval of the mean. Costs are those of the test period."
-    )
-    return table(caption, TABLE_HEADINGS, bodies)
+    return table("Mean over the seeds [95 % interval]", TABLE_HEADINGS, bodies)
 
 
 def _method_row(entry: TableRow, is_main: bool) -> str:

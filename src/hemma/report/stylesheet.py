@@ -22,7 +22,7 @@ pre { background: var(--card); padding: .8rem 1rem; border-radius: .4rem; overfl
 .hash { overflow-wrap: anywhere; font-size: .88rem; }
 .wide { overflow-x: auto; margin: .8rem 0; }
 table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabular-nums; }
-caption { text-align: left; padding-bottom: .5rem; font-size: .88rem; }
+caption { text-align: left; white-space: nowrap; padding-bottom: .5rem; font-size: .88rem; }
 th, td { padding: .32rem .65rem; text-align: right; vertical-align: top;
   border-bottom: 1px solid var(--line); }
 th { font-weight: 600; }
@@ -49,7 +49,8 @@ dd { margin: 0; }
 @media (max-width: 40rem) { dl { display: block; } dt { margin-top: .7rem; } }
 footer { margin-top: 3rem; padding-bottom: 2.5rem; font-size: .88rem; color: var(--faint); }
 @media print { body { font-size: 10pt; --paper: #ffffff; --ink: #000000; --faint: #444444; --line: #bbbbbb; }
-  main, header, footer { max-width: none; padding: 0; } h2 { break-after: avoid; }
+  main, header, footer { max-width: none; padding: 0; } h2, h3 { break-after: avoid; }
+  .figures { grid-template-columns: 1fr 1fr; }
   tr, figure { break-inside: avoid; } .wide, figure.full .scroll { overflow: visible; }
   figure.full img { min-width: 0; } table { font-size: 7.5pt; }
   th, td { padding: .2rem .3rem; } pre { white-space: pre-wrap; } }
