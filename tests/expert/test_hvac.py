@@ -124,6 +124,18 @@ def test_a_model_that_is_not_affine_takes_some_steps_and_says_when_it_may_not():
     assert not planned(home, outdoor, DescentSettings(max_iterations=2)).converged
 
 
+def test_padding_changes_nothing():
+    home = explicit(0.9, 1.0, 1.2, False)
+    hot = weather(heat(60, 34.0, 1))
+    with jax.enable_x64(True):
+        plain = plan_hvac(home, hot, home.reset().thermal)
+        padded = plan_hvac(home, hot, home.reset().thermal, compiled_slots=100)
+    assert plain.hvac_power.max() == pytest.approx(1.2)
+    np.testing.assert_allclose(plain.hvac_power, padded.hvac_power, atol=1e-9)
+    np.testing.assert_allclose(plain.indoor_temperature, padded.indoor_temperature, atol=1e-9)
+    assert padded.converged
+
+
 def test_batches_of_homes_plan_as_one_by_one():
     powers = jnp.array([0.9, 1.5, 2.0])
     outdoor = heat(48, 34.0, 3)

@@ -1,29 +1,48 @@
-"""Carry a plan out on the home itself, so that what is reported is what the home does."""
+"""Carry a plan out on a home, so that what is reported is what the home does."""
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jaxtyping import Float
 
-from hemma.home import Battery, Home, HomeState, Schedule, Trajectory, replay
+from hemma.home import Battery, Home, HomeState, Step, Trajectory, observe
 from hemma.home.precision import in_double
-from hemma.types import Action, Array, Exogenous
+from hemma.types import Action, Array, Exogenous, Observation
 
 
-def carry_out(home: Home, exogenous: Exogenous, actions: Action, initial: HomeState) -> Trajectory:
-    """Replay ``actions`` [kW] in float64 without disturbance; every leaf of the result is a NumPy array."""
+def carry_out(
+    home: Home,
+    exogenous: Exogenous,
+    actions: Action,
+    initial: HomeState,
+    disturbances: Float[Array, "slots"] | None = None,
+) -> Trajectory:
+    """What ``actions`` [kW] do to ``home`` from ``initial``, in float64; all leaves are NumPy arrays.
+
+    ``disturbances`` are epsilon_t [degC], zero unless given.
+    """
+    if disturbances is None:
+        disturbances = np.zeros(exogenous.slots)
     with jax.enable_x64(True):
-        quiet = eqx.tree_at(lambda h: h.disturbance_deviation, home, 0.0)
-        inputs = in_double((quiet, exogenous, actions, initial))
-        return jax.tree.map(np.asarray, _replayed(*inputs, jax.random.key(0)))
+        inputs = in_double((home, exogenous, actions, initial, disturbances))
+        return jax.tree.map(np.asarray, _carried_out(*inputs))
 
 
 @eqx.filter_jit
-def _replayed(
-    home: Home, exogenous: Exogenous, actions: Action, initial: HomeState, key: Array
+def _carried_out(
+    home: Home, exogenous: Exogenous, actions: Action, initial: HomeState, disturbances: Array
 ) -> Trajectory:
+    def slot(
+        state: HomeState, inputs: tuple[Exogenous, Action, Array]
+    ) -> tuple[HomeState, tuple[Observation, Step]]:
+        now, action, disturbance = inputs
+        step = home.step(state, now, action, disturbance)
+        return step.state, (observe(state, now), step)
+
     start = eqx.tree_at(lambda s: s.slot, initial, jnp.zeros((), int))
-    return replay(home, exogenous, Schedule(actions), start, key)
+    _, (observations, steps) = jax.lax.scan(slot, start, (exogenous, actions, disturbances))
+    return Trajectory(observations=observations, steps=steps)
 
 
 def net_power(battery: Battery, charge: np.ndarray, discharge: np.ndarray) -> np.ndarray:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
+from jax.core import Tracer
 from jaxtyping import Bool, Float, Int
 
 from hemma.home import Home, ThermalState
@@ -44,7 +46,11 @@ class HvacPlan(eqx.Module):
 
 
 def plan_hvac(
-    home: Home, exogenous: Exogenous, initial: ThermalState, settings: DescentSettings = DESCENT
+    home: Home,
+    exogenous: Exogenous,
+    initial: ThermalState,
+    settings: DescentSettings = DESCENT,
+    compiled_slots: int | None = None,
 ) -> HvacPlan:
     """Minimise the sum of X3 over h in [0, h^max], from h = 0 and with the least energy, in float64.
 
@@ -52,13 +58,30 @@ def plan_hvac(
     every temperature beyond the comfort band moves to its edge (``_aims``), the path is projected onto
     those that 0 <= h <= h^max can reach (backward in ``_aims``, forward in ``_follow``), and all slopes
     come from the model by automatic differentiation. ``vmap`` and ``jit`` it over homes or days at will.
+
+    Every length of period is compiled once. With ``compiled_slots`` periods of up to that many slots share
+    one compilation; the padding changes nothing. The plan holds NumPy arrays unless it is traced.
     """
+    slots = exogenous.slots
+    padding = max(0, (compiled_slots or slots) - slots)
     with jax.enable_x64(True):
-        return _descend(*in_double((home, exogenous, initial)), settings)
+        exogenous = jax.tree.map(lambda x: jnp.pad(x, (0, padding), mode="edge"), in_double(exogenous))
+        home, initial = in_double((home, initial))
+        plan = _descend(home, exogenous, initial, jnp.arange(slots + padding) < slots, settings)
+        h, T = plan.hvac_power[:slots], plan.indoor_temperature[:slots]
+        plan = eqx.tree_at(lambda p: (p.hvac_power, p.indoor_temperature), plan, (h, T))
+    return jax.tree.map(lambda x: x if isinstance(x, Tracer) else np.asarray(x), plan)
 
 
 @eqx.filter_jit
-def _descend(home: Home, exogenous: Exogenous, initial: ThermalState, settings: DescentSettings) -> HvacPlan:
+def _descend(
+    home: Home,
+    exogenous: Exogenous,
+    initial: ThermalState,
+    counts: Bool[Array, "slots"],
+    settings: DescentSettings,
+) -> HvacPlan:
+    """``counts`` is false in padded slots: there the HVAC is off and nothing is aimed at."""
     start = jnp.zeros(exogenous.slots)
 
     def unfinished(carry: tuple[Array, Array, Array]) -> Array:
@@ -67,8 +90,8 @@ def _descend(home: Home, exogenous: Exogenous, initial: ThermalState, settings: 
 
     def iterate(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         h, iteration, _ = carry
-        aims = _aims(home, _full_power(home, exogenous, initial, h))
-        after = _follow(home, exogenous, initial, h, aims)
+        aims = _aims(home, _full_power(home, exogenous, initial, h), counts)
+        after = jnp.where(counts, _follow(home, exogenous, initial, h, aims), 0.0)
         return after, iteration + 1, jnp.max(jnp.abs(after - h))
 
     first = (start, jnp.asarray(0), jnp.asarray(jnp.inf))
@@ -121,7 +144,7 @@ def _full_power(home: Home, exogenous: Exogenous, initial: ThermalState, h: Arra
     return _FullPower(before.indoor_temperature, after, carry)
 
 
-def _aims(home: Home, full: _FullPower) -> Float[Array, "slots"]:
+def _aims(home: Home, full: _FullPower, counts: Bool[Array, "slots"]) -> Float[Array, "slots"]:
     """Temperature to aim at by the end of each slot [degC]: the edge of the band, or earlier what it takes.
 
     Backward: r_t = min(T^upp, T_t + (r_{t+1} - T'_t(h^max)) / a_t), not below T^low, is the highest
@@ -131,13 +154,14 @@ def _aims(home: Home, full: _FullPower) -> Float[Array, "slots"]:
     if home.hvac.heats:
         edge, far, sign = -home.comfort.low, -home.comfort.high, -1.0
 
-    def slot(aim: Array, full: _FullPower):
-        remembers = full.carry > 0
+    def slot(aim: Array, inputs: tuple[_FullPower, Array]):
+        full, counts = inputs
+        remembers = (full.carry > 0) & counts
         reach = sign * full.before + (aim - sign * full.after) / jnp.where(remembers, full.carry, 1.0)
         return jnp.clip(jnp.where(remembers, reach, edge), far, edge), aim
 
     start = jnp.asarray(edge, full.before.dtype)
-    return sign * jax.lax.scan(slot, start, full, reverse=True)[1]
+    return sign * jax.lax.scan(slot, start, (full, counts), reverse=True)[1]
 
 
 def _follow(
