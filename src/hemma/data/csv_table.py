@@ -67,6 +67,12 @@ class CsvTable:
         return moment
 
 
+def read_header(file: SourceFile) -> tuple[str, ...]:
+    """The column names in the first line of a file."""
+    first = next(csv.reader(file.text.splitlines()[:1]), [])
+    return tuple(cell.strip() for cell in first)
+
+
 def parse_table(file: SourceFile, required: Sequence[str], optional: Sequence[str]) -> CsvTable:
     """The CSV table of a file that holds the ``required`` columns, and of others only ``optional`` ones."""
     reader = csv.reader(file.text.splitlines(keepends=True))

@@ -82,7 +82,7 @@ def _holes(names: Sequence[str], columns: Sequence[Float[np.ndarray, "slots"]]) 
 
 
 def _where(hole: Hole, columns: int) -> str:
-    return "every column" if len(hole.columns) == columns else ", ".join(hole.columns)
+    return "every column" if 1 < columns == len(hole.columns) else ", ".join(hole.columns)
 
 
 def _refusal(name: str, clock: Clock, holes: list[Hole], columns: int, longest: float) -> str:
@@ -121,3 +121,8 @@ def _notes(clock: Clock, holes: list[Hole], columns: int) -> tuple[str, ...]:
         f"{hole.duration(clock)} interpolated from {clock.text(hole.start)} in {_where(hole, columns)}"
         for hole in holes
     )
+
+
+def counted(number: int, what: str) -> str:
+    """A number of things for people: ``1 row``, ``2 rows``."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
