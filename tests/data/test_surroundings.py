@@ -5,8 +5,12 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 import pytest
 from dataport_files import body, dataport, instants, read, refusal, same_series, weather_file
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hemma.data import PecanStreetOptions, TimeOfUse
+from hemma.data.clock import Clock
+from hemma.data.surroundings import price
 from hemma.errors import HemmaError
 
 
@@ -78,3 +82,23 @@ def test_time_of_use_over_midnight_and_on_weekdays(folder):
     np.testing.assert_array_equal(dear, [0, 1, 22, 23])
     with pytest.raises(HemmaError, match="hours between 0 and 24"):
         TimeOfUse(0.1, 0.3, peak_from=25.0)
+
+
+@given(
+    coarse=st.sampled_from([5, 10, 15, 20, 30, 45, 60, 120, 180]),
+    slot=st.sampled_from([5, 15, 30, 60, 90]),
+    shift=st.integers(0, 12),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_prices_keep_their_mean_whatever_the_two_clocks(tmp_path_factory, coarse, slot, shift, seed):
+    """Against a loop over the minutes of each slot, each at the price that holds then."""
+    prices = np.random.default_rng(seed).uniform(-0.1, 1.0, 60 * 24 // coarse)
+    times = instants(len(prices), "2018-06-01T00:00+00:00", timedelta(minutes=coarse))
+    path = tmp_path_factory.mktemp("prices") / "prices.csv"
+    rows = [f"{t.isoformat()},{p!r}" for t, p in zip(times, prices.tolist(), strict=True)]
+    path.write_text("\n".join(["time,buy_per_kwh", *rows]))
+    start = int(times[0].timestamp()) + shift * 300
+    clock = Clock(start, slot * 60, np.zeros(8))
+    minutes = shift * 5 + np.arange(8 * slot)
+    by_hand = prices[minutes // coarse].reshape(8, slot).mean(axis=1)
+    np.testing.assert_allclose(price(path, "buy_per_kwh", clock).values, by_hand, atol=1e-12)
