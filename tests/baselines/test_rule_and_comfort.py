@@ -5,7 +5,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hemma.baselines.comfort import ComfortHold
@@ -63,6 +63,7 @@ def test_rule_under_constant_heat_cycles_and_leaves_the_battery_alone():
     np.testing.assert_array_equal(path.steps.state.battery_energy, 1.2)
 
 
+@settings(max_examples=25)
 @given(
     temperature=st.floats(10, 40),
     outdoor=st.floats(-20, 50),
@@ -78,6 +79,7 @@ def test_comfort_law_is_the_closed_form_on_the_explicit_model(temperature, outdo
     assert float(h) == pytest.approx(expected, abs=1e-9)
 
 
+@settings(max_examples=25)
 @given(temperature=st.floats(10, 40), outdoor=st.floats(-20, 50), heats=st.booleans())
 def test_comfort_law_is_the_smallest_power_that_reaches_the_band(temperature, outdoor, heats):
     home = Home(hvac=Hvac(heats=heats))
