@@ -131,7 +131,7 @@ def test_measuring_the_real_temperature_often_mends_a_wrong_model():
         run = run_hierarchy(planning, home, exogenous, HierarchySettings(hvac=horizon))
         return float(np.mean(run.trajectory.steps.costs.temperature_deviation))
 
-    once, often = deviation(WHOLE_PERIOD), deviation(Horizon(72.0, 4.0))
+    once, often = deviation(WHOLE_PERIOD), deviation(Horizon(72.0, 2.0))
     assert 0 < often < 0.6 * once
 
 
