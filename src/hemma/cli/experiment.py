@@ -1,0 +1,159 @@
+"""``hemma reproduce``, its stages one by one, ``hemma report`` and ``hemma settings``."""
+
+import shlex
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hemma.cli.compilation import keep_compiled_code
+from hemma.cli.console import going_on_later, print_json, print_table, show_progress, show_results
+
+if TYPE_CHECKING:
+    from hemma.experiment.run import Job
+
+Traces = Annotated[
+    Path | None,
+    typer.Option("--traces", help="Canonical trace file of your own home.", show_default="an embedded home"),
+]
+Home = Annotated[
+    list[int] | None,
+    typer.Option("--home", help="Embedded home, 1 to 6; repeat it for several.", show_default="1"),
+]
+TestFrom = Annotated[
+    str | None,
+    typer.Option(
+        "--test-from", metavar="DATE", help="First day of the test.", show_default="the last 31 days"
+    ),
+]
+Settings = Annotated[
+    Path | None,
+    typer.Option("--settings", metavar="FILE.yaml", help="Settings; `hemma settings` prints the defaults."),
+]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Results folder.")]
+Seeds = Annotated[
+    int | None, typer.Option("--seeds", help="Runs of HA-1 instead of the number in the settings.")
+]
+Quick = Annotated[
+    bool, typer.Option("--quick", help="All stages in two minutes, too little training to quote.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print results.json instead of a table.")]
+Folder = Annotated[Path, typer.Argument(help="Results folder of an earlier run.")]
+
+OUT = Path("results")
+
+VERBS = {
+    "reproduce": "Run everything: identify, demonstrate, baselines, train, evaluate, report.",
+    "identify": "Identify the building and say how well the network predicts it.",
+    "demonstrate": "Identify, and let the expert demonstrate on the first training days.",
+    "train": "Identify, demonstrate, and train HA-1.",
+    "evaluate": "Everything but the report.",
+}
+"""Each goes as far as its name and takes what an earlier command left in the folder."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What was asked for on the command line."""
+
+    traces: Path | None
+    homes: tuple[int, ...]
+    test_from: str | None
+    settings: Path | None
+    folder: Path
+    seeds: int | None
+    quick: bool
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to ``app``."""
+    for verb, text in VERBS.items():
+        app.command(verb, help=text)(_command(verb))
+    app.command()(report)
+    app.command()(settings)
+
+
+def report(folder: Folder = OUT) -> None:
+    """Write the figures and the report of a results folder again."""
+    from hemma.report import write_report
+
+    path = write_report(folder)
+    print_table(folder)
+    typer.echo(path)
+
+
+def settings(file: Settings = None) -> None:
+    """Print all settings with their explanations, as a file for --settings."""
+    from hemma.experiment.settings import Experiment
+    from hemma.experiment.settings_file import read_settings, settings_text
+
+    typer.echo(settings_text(Experiment() if file is None else read_settings(file)), nl=False)
+
+
+def _command(verb: str):
+    """The command of a verb: they all take the same options."""
+
+    def command(  # noqa: PLR0913
+        traces: Traces = None,
+        home: Home = None,
+        test_from: TestFrom = None,
+        settings: Settings = None,
+        out: Out = OUT,
+        seeds: Seeds = None,
+        quick: Quick = False,
+        json: Json = False,
+    ) -> None:
+        homes = tuple(home or ())
+        content = _run(verb, Request(traces, homes, test_from, settings, out, seeds, quick))
+        if json:
+            print_json(content)
+        else:
+            show_results(out, content)
+
+    return command
+
+
+def _run(verb: str, request: Request) -> Any:
+    """Run the stages up to the verb's; interrupted, it says how to go on."""
+    with going_on_later():
+        from hemma.experiment.run import Stage, run
+
+        last = Stage.REPORT if verb == "reproduce" else Stage[verb.upper()]
+        job = _job(request)
+        keep_compiled_code()
+        with show_progress() as progress:
+            return run(job, last, progress)
+
+
+def _job(request: Request) -> "Job":
+    from hemma.errors import HemmaError
+    from hemma.experiment.load import embedded_homes, own_home
+    from hemma.experiment.run import Job
+
+    if request.traces is not None and request.homes:
+        raise HemmaError("expected --traces FILE or --home N, got both; leave one of them out")
+    experiment = _experiment(request)
+    if request.traces is None:
+        homes = embedded_homes(experiment, request.homes or (1,))
+    else:
+        homes = own_home(experiment, request.traces)
+    command = shlex.join(["hemma", *sys.argv[1:]])
+    return Job(experiment, homes, request.folder, request.test_from, command)
+
+
+def _experiment(request: Request):
+    from dataclasses import replace
+
+    from hemma.errors import HemmaError
+    from hemma.experiment.settings import Experiment, quick
+    from hemma.experiment.settings_file import read_settings
+
+    experiment = Experiment() if request.settings is None else read_settings(request.settings)
+    experiment = quick(experiment) if request.quick else experiment
+    if request.seeds is None:
+        return experiment
+    if request.seeds < 1:
+        raise HemmaError(f"--seeds: expected a number of runs of at least 1, got {request.seeds}. Correct it")
+    return replace(experiment, seeds=request.seeds)

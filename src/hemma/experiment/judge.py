@@ -1,0 +1,80 @@
+"""Stage: measure a method's runs on the test period, at equal comfort, and write down what they did."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+
+from hemma.baselines.optimum import OptimumProblem, optimum_problem
+from hemma.evaluation import EqualComfort, Metrics, Outcome, measure, write_exogenous, write_schedule
+from hemma.experiment.case import Case
+from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.results import Run
+from hemma.experiment.store import FINGERPRINT, Store, read_json, write_json
+
+STAGE = "evaluate"
+
+
+@dataclass(frozen=True)
+class Played:
+    """One run of a method on the test period."""
+
+    outcome: Outcome
+    seed: int | None = None
+    seconds_to_train: float | None = None
+    curve: str | None = None
+
+
+@dataclass(frozen=True)
+class Judge:
+    """Measures methods on one home; the perfect-information problem is set up once, when first needed."""
+
+    case: Case
+    store: Store
+
+    @cached_property
+    def problem(self) -> OptimumProblem:
+        """Perfect information over the test period."""
+        return optimum_problem(self.case.home, self.case.test)
+
+    def judged(self, label: str, mark: str, play: Callable[[], Sequence[Played]]) -> tuple[Run, ...]:
+        """The runs of ``label``, which depend on ``mark``: measured now, or kept from an earlier run."""
+        mark = fingerprint(STAGE, label, self.case.mark, mark)
+        path = self.store.model(f"{_slug(label)}.runs.json")
+        runs = self._kept(path, mark)
+        if runs is None:
+            runs = tuple(self._measured(label, played) for played in play())
+            write_json(path, {FINGERPRINT: mark, "runs": [asdict(run) for run in runs]})
+        return runs
+
+    def write_exogenous(self) -> None:
+        """Write what the home did not decide in the test period, beside the schedules."""
+        path = self.store.folder / self.store.schedule("exogenous.csv")
+        write_exogenous(path, self.case.parts.test.time_stamps(), self.case.test)
+
+    def _kept(self, path: Path, mark: str) -> tuple[Run, ...] | None:
+        if self.store.fingerprint(path) != mark:
+            return None
+        runs = tuple(Run(**{**run, "metrics": Metrics(**run["metrics"])}) for run in read_json(path)["runs"])
+        files = [name for run in runs for name in (run.schedule, run.curve) if name is not None]
+        return runs if self.store.holds(path, mark, files) else None
+
+    def _measured(self, label: str, played: Played) -> Run:
+        file = _slug(label) + (".csv" if played.seed is None else f"-{played.seed}.csv")
+        schedule = self.store.schedule(file)
+        write_schedule(self.store.folder / schedule, self.case.parts.test.time_stamps(), played.outcome)
+        metrics = measure(played.outcome, self._at_equal_comfort(played.outcome), played.seconds_to_train)
+        return Run(seed=played.seed, metrics=metrics, schedule=schedule, curve=played.curve)
+
+    def _at_equal_comfort(self, outcome: Outcome) -> EqualComfort:
+        """Perfect information with the deviation that the run itself caused."""
+        deviation = outcome.total_deviation
+        return EqualComfort(
+            optimum=self.problem.solve(deviation).cost,
+            no_battery=self.problem.solve(deviation, battery=False).cost,
+        )
+
+
+def _slug(label: str) -> str:
+    """A file name: ``no battery`` becomes ``no-battery``."""
+    return label.replace(" ", "-")

@@ -1,0 +1,85 @@
+"""All that an experiment depends on besides its traces, in one frozen tree."""
+
+from dataclasses import dataclass, field, replace
+
+from hemma.data import Tariff
+from hemma.expert.hierarchy import HierarchySettings
+from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Home, Hvac
+from hemma.home.checks import require
+from hemma.identification.excitation import Excitation
+from hemma.identification.fit import IdentificationSettings
+from hemma.irl.airl import AIRLSettings
+
+
+@dataclass(frozen=True)
+class DataEfficiency:
+    """How the method fares with more and fewer days of demonstrations (Figs. 3a and 3b of the paper)."""
+
+    days: tuple[int, ...] = (3, 7, 15, 30, 60)
+    """Lengths, each from the first training day on; those longer than the training period are left out."""
+    seeds: int = 3
+    """Runs of each length."""
+
+    def __post_init__(self):
+        """Refuse lengths and numbers of runs that cannot be."""
+        require("data_efficiency", all(days >= 1 for days in self.days), "days of at least 1", self.days)
+        require("data_efficiency", len(set(self.days)) == len(self.days), "different days", self.days)
+        require("data_efficiency", self.seeds >= 1, "seeds >= 1", self.seeds)
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """The paper's experiment; every default that the paper does not print is explained in docs/paper.md."""
+
+    battery: Battery = field(default_factory=Battery)
+    building: ExplicitThermalModel = field(default_factory=ExplicitThermalModel)
+    """The building that is simulated, its inertia for one hour whatever the slot length of the traces."""
+    hvac: Hvac = field(default_factory=Hvac)
+    comfort: ComfortBand = field(default_factory=ComfortBand)
+    initial_temperature: float = 23.0
+    """T_in at the first slot of any period [degC]."""
+    disturbance_deviation: float = 0.0
+    """Standard deviation of the thermal disturbance in identification and training [degC]; 0 in the test."""
+    tariff: Tariff = field(default_factory=Tariff)
+    """From wholesale prices to what the embedded homes pay; a file of traces brings its own prices."""
+    currency: str = "$"
+    """Of the prices: a sign or a code such as SEK."""
+    pv_scale: float = 1.0
+    """PV generation of the traces is multiplied by this."""
+    excitation: Excitation = field(default_factory=Excitation)
+    identification: IdentificationSettings = field(default_factory=IdentificationSettings)
+    expert: HierarchySettings = field(default_factory=HierarchySettings)
+    airl: AIRLSettings = field(default_factory=AIRLSettings)
+    seeds: int = 5
+    """Runs of HA-1, with the seeds 0, 1, ..."""
+    demonstration_days: int = 15
+    """Days of demonstrations of HA-1, the first of the training period."""
+    data_efficiency: DataEfficiency = field(default_factory=DataEfficiency)
+
+    def __post_init__(self):
+        """Refuse numbers of runs and days that cannot be."""
+        require("seeds", self.seeds >= 1, "at least 1", self.seeds)
+        require("demonstration_days", self.demonstration_days >= 1, "at least 1", self.demonstration_days)
+        require("pv", self.pv_scale >= 0, "scale >= 0", self.pv_scale)
+
+    def home(self, slot_length: float) -> Home:
+        """The home for slots of ``slot_length`` [h], the building converted exactly."""
+        return Home(
+            battery=self.battery,
+            thermal_model=self.building.at_slot_length(slot_length),
+            hvac=self.hvac,
+            comfort=self.comfort,
+            slot_length=slot_length,
+            initial_temperature=self.initial_temperature,
+            disturbance_deviation=self.disturbance_deviation,
+        )
+
+
+def quick(experiment: Experiment) -> Experiment:
+    """The same experiment in less than two minutes: every stage, but too little training to quote."""
+    return replace(
+        experiment,
+        seeds=min(experiment.seeds, 2),
+        airl=replace(experiment.airl, iterations=min(experiment.airl.iterations, 200)),
+        data_efficiency=replace(experiment.data_efficiency, days=(3,), seeds=min(experiment.seeds, 2)),
+    )

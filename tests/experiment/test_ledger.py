@@ -1,0 +1,117 @@
+"""The results file: grows, is never a mix of two settings, and takes only its own stale files away."""
+
+import json
+import math
+
+import pytest
+
+from hemma.evaluation import Metrics
+from hemma.experiment.ledger import is_part_of, open_ledger
+from hemma.experiment.progress import Silence
+from hemma.experiment.results import Head, HomeResults, MethodResults, Period, Run, home_document
+
+
+def run(seed=None, cost=1.0, schedule="schedules/a/Rule.csv", curve=None):
+    return Run(seed, Metrics(cost, cost, 0.0, 0.1, 2.4, math.nan, None, None), schedule, curve)
+
+
+def home(name="a", methods=()):
+    period = Period("2021-08-01T00:00:00-06:00", 24)
+    return HomeResults(name, "made up", "$", (), "00", 1.0, period, period, (19.0, 24.0), methods=methods)
+
+
+class Notices(Silence):
+    def __init__(self):
+        self.messages = []
+
+    def noticed(self, message):
+        self.messages.append(message)
+
+
+def content(folder):
+    return json.loads((folder / "results.json").read_text())
+
+
+def test_what_is_undefined_is_null_and_never_nan(tmp_path):
+    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
+    ledger.put(home(methods=(MethodResults("Rule", (run(),)),)))
+    assert "NaN" not in (tmp_path / "results.json").read_text()
+    rule = content(tmp_path)["homes"]["a"]["methods"]["Rule"]
+    assert rule["runs"][0]["gap_to_optimum"] is None
+    assert rule["mean"]["gap_to_optimum"] is None
+    assert rule["interval"]["energy_cost"] is None
+
+
+def test_mean_and_interval_over_seeds():
+    runs = tuple(run(seed, cost) for seed, cost in enumerate([1.0, 2.0, 3.0]))
+    rule = home_document(home(methods=(MethodResults("HA-1", runs, days=15),)))["methods"]["HA-1"]
+    assert rule["mean"]["energy_cost"] == 2.0
+    low, high = rule["interval"]["energy_cost"]
+    assert (low + high) / 2 == pytest.approx(2.0)
+    assert high - 2.0 == pytest.approx(4.302653 / 3**0.5, abs=1e-5)
+    assert [r["seed"] for r in rule["runs"]] == [0, 1, 2]
+
+
+def test_the_same_settings_keep_other_homes(tmp_path):
+    open_ledger(tmp_path, Head("hemma", {"seeds": 1}), Silence()).put(home("a"))
+    ledger = open_ledger(tmp_path, Head("hemma again", {"seeds": 1}), Silence())
+    ledger.put(home("b"))
+    assert set(content(tmp_path)["homes"]) == {"a", "b"}
+
+
+def test_other_settings_replace_everything_and_say_so(tmp_path):
+    open_ledger(tmp_path, Head("hemma", {"seeds": 1}), Silence()).put(home("a"))
+    notices = Notices()
+    ledger = open_ledger(tmp_path, Head("hemma", {"seeds": 2}), notices)
+    ledger.put(home("b"))
+    assert set(content(tmp_path)["homes"]) == {"b"}
+    assert len(notices.messages) == 1
+    assert "replaced" in notices.messages[0]
+
+
+def test_going_on_never_makes_the_file_poorer(tmp_path):
+    full = home(methods=(MethodResults("Rule", (run(),)),))
+    open_ledger(tmp_path, Head("hemma", {}), Silence()).put(full)
+    before = (tmp_path / "results.json").read_bytes()
+    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
+    ledger.put(home())
+    assert (tmp_path / "results.json").read_bytes() == before
+    ledger.put(home(methods=(MethodResults("Rule", (run(cost=5.0),)),)))
+    assert content(tmp_path)["homes"]["a"]["methods"]["Rule"]["mean"]["energy_cost"] == 5.0
+
+
+def test_only_files_that_the_old_results_named_are_taken_away(tmp_path):
+    folder = tmp_path / "results"
+    schedules = folder / "schedules" / "a"
+    schedules.mkdir(parents=True)
+    for name in ("old.csv", "kept.csv", "mine.csv"):
+        (schedules / name).write_text("time\n")
+    (tmp_path / "outside.csv").write_text("mine\n")
+    (folder / "notes.txt").write_text("mine\n")
+    old = (run(0, 1.0, "schedules/a/old.csv"), run(1, 1.0, "schedules/a/kept.csv"))
+    foreign = (run(2, 1.0, "../outside.csv"), run(3, 1.0, "notes.txt"))
+    open_ledger(folder, Head("hemma", {"x": 1}), Silence()).put(
+        home(methods=(MethodResults("M", (*old, *foreign)),))
+    )
+    ledger = open_ledger(folder, Head("hemma", {"x": 2}), Silence())
+    ledger.put(home(methods=(MethodResults("M", (run(1, 1.0, "schedules/a/kept.csv"),)),)))
+    ledger.close()
+    assert sorted(path.name for path in schedules.iterdir()) == ["kept.csv", "mine.csv"]
+    assert (tmp_path / "outside.csv").exists()
+    assert (folder / "notes.txt").exists()
+
+
+@pytest.mark.parametrize("broken", ["", "{", "[]", '{"homes": 3}', '{"homes": []}'])
+def test_a_broken_results_file_does_not_stop_a_new_run(tmp_path, broken):
+    (tmp_path / "results.json").write_text(broken)
+    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
+    ledger.put(home())
+    assert set(content(tmp_path)["homes"]) == {"a"}
+
+
+def test_part_of():
+    assert is_part_of({"a": {"b": 1}}, {"a": {"b": 1, "c": 2}, "d": 3})
+    assert is_part_of({"a": []}, {"a": [1]})
+    assert not is_part_of({"a": 1}, {"a": 2})
+    assert not is_part_of({"a": 1}, None)
+    assert not is_part_of({"a": [1]}, {"a": [1, 2]})

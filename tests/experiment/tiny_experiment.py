@@ -1,0 +1,61 @@
+"""A tiny experiment: a week of an embedded home, all stages, hardly any training."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from hemma.data import load_austin2021
+from hemma.experiment.progress import Silence
+from hemma.experiment.run import Job
+from hemma.experiment.settings import DataEfficiency, Experiment
+
+
+def tiny_experiment(iterations=50):
+    """Two seeds, two days of demonstrations, and one day for the data efficiency."""
+    default = Experiment()
+    ppo = replace(default.airl.ppo, rollouts=4, slots=12, epochs=1, minibatches=2, hidden=(4,))
+    airl = replace(
+        default.airl,
+        iterations=iterations,
+        ppo=ppo,
+        hidden=(4,),
+        batch=16,
+        steps=1,
+        agent_rollouts=2,
+        replayed=2,
+    )
+    return replace(
+        default,
+        airl=airl,
+        identification=replace(default.identification, updates=20, chunk=10, window=6.0, batch=8, width=4),
+        seeds=2,
+        demonstration_days=2,
+        data_efficiency=DataEfficiency(days=(1, 2, 60), seeds=2),
+    )
+
+
+def tiny_job(folder, experiment=None):
+    """Five days to train, two to test."""
+    traces = load_austin2021(2).window(0, 24 * 7)
+    return Job(
+        experiment=tiny_experiment() if experiment is None else experiment,
+        homes=(traces,),
+        folder=Path(folder),
+        test_from="2021-06-06",
+        command="hemma reproduce --for-tests",
+    )
+
+
+class Watching(Silence):
+    """Remembers what the stages said."""
+
+    def __init__(self):
+        self.done, self.kept, self.notices = [], [], []
+
+    def finished(self, stage, message):
+        self.done.append(stage)
+
+    def reused(self, stage, message):
+        self.kept.append(stage)
+
+    def noticed(self, message):
+        self.notices.append(message)
