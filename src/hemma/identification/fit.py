@@ -1,6 +1,7 @@
 """Fit the physically consistent neural network to a record: multi-step sequences and the best checkpoint."""
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import equinox as eqx
 import jax
@@ -8,13 +9,14 @@ import jax.numpy as jnp
 from jaxtyping import Float
 
 from hemma.errors import HemmaError
-from hemma.identification.pcnn import PcnnWeights, PhysicallyConsistentNetwork, ThermalResponse
+from hemma.identification.pcnn import InputScaling, PcnnWeights, PhysicallyConsistentNetwork, ThermalResponse
 from hemma.identification.record import ThermalRecord
 from hemma.identification.settings import IdentificationSettings
 from hemma.identification.start import input_scaling, least_squares_response
 from hemma.identification.training import Training
 from hemma.types import Array
 
+Numbers = TypeVar("Numbers", ThermalResponse, InputScaling)
 Progress = Callable[[int, int], None]
 """``on_progress(done, total)`` in updates; early stopping ends before total."""
 
@@ -57,11 +59,16 @@ def fit(
     weights_key, batch_key = jax.random.split(key)
     model = PhysicallyConsistentNetwork(
         weights=PcnnWeights.create(weights_key, settings.width, settings.depth),
-        start=least_squares_response(training) if start is None else start,
-        scaling=input_scaling(training),
+        start=_as_arrays(least_squares_response(training) if start is None else start),
+        scaling=_as_arrays(input_scaling(training)),
         slot_length=record.slot_length,
     )
     return _run(Training(settings, length, training, validation), model, batch_key, on_progress)
+
+
+def _as_arrays(numbers: Numbers) -> Numbers:
+    """Numbers that are traced, so that another home does not mean another compilation."""
+    return jax.tree.map(lambda x: jnp.asarray(x, float), numbers)
 
 
 def _split(

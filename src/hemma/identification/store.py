@@ -4,6 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from hemma.checkpoint import load_header, load_tree, save_tree
@@ -39,8 +40,8 @@ def load_model(path: Path) -> PhysicallyConsistentNetwork:
         )
     like = PhysicallyConsistentNetwork(
         weights=PcnnWeights.create(jax.random.key(0), header["width"], header["depth"]),
-        start=ThermalResponse(heating=1.0, cooling=1.0, loss=0.5),
-        scaling=InputScaling(temperature_mean=0.0, temperature_deviation=1.0, pv_peak=1.0),
+        start=ThermalResponse(heating=jnp.ones(()), cooling=jnp.ones(()), loss=jnp.full((), 0.5)),
+        scaling=InputScaling(jnp.zeros(()), jnp.ones(()), jnp.ones(())),
         slot_length=header["slot_length_h"],
     )
     return load_tree(path, like)
