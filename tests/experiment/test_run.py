@@ -183,15 +183,19 @@ def test_other_settings_compute_anew_what_depends_on_them_and_nothing_else(finis
     assert content["homes"][HOME]["methods"] == {}
 
 
-def test_a_product_that_is_broken_is_made_again(finished, tmp_path):
+def test_a_product_that_is_broken_missing_or_changed_is_made_again(finished, tmp_path):
     shutil.copytree(finished[0], tmp_path / "results")
     (tmp_path / "results/models" / HOME / "network.safetensors").write_bytes(b"broken")
     (tmp_path / "results/schedules" / HOME / "Rule.csv").unlink()
+    schedule = tmp_path / "results/schedules" / HOME / "HMPC.csv"
+    schedule.write_text(schedule.read_text().replace("1", "2"))
     watching = Watching()
     content = run(tiny_job(tmp_path / "results"), Stage.EVALUATE, watching)
     assert watching.done == ["identify"]
     assert without_seconds(content) == without_seconds(finished[1])
-    assert (tmp_path / "results/schedules" / HOME / "Rule.csv").is_file()
+    for name in ("Rule.csv", "HMPC.csv"):
+        made, original = (root / "schedules" / HOME / name for root in (tmp_path / "results", finished[0]))
+        assert made.read_bytes() == original.read_bytes()
 
 
 def test_the_method_sees_its_own_days_and_no_others(finished, tmp_path):

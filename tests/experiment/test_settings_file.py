@@ -4,7 +4,7 @@ from dataclasses import fields, is_dataclass, replace
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hemma.errors import HemmaError
@@ -26,6 +26,7 @@ def test_the_printed_defaults_are_the_defaults(tmp_path):
     assert read_settings(written(tmp_path, "battery:\n")) == Experiment()
 
 
+@settings(max_examples=25)
 @given(
     max_energy=st.floats(0.7, 100.0),
     low=st.floats(-20.0, 10.0),

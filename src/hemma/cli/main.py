@@ -51,10 +51,11 @@ def _stop(message: str) -> None:
     sys.exit(MISTAKE)
 
 
-def _print_version(wanted: bool) -> None:
+def _print_version(wanted: bool | None) -> bool:
     if wanted:
         typer.echo(hemma.__version__)
         raise typer.Exit
+    return False
 
 
 @app.callback()

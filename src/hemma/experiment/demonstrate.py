@@ -10,7 +10,7 @@ import numpy as np
 from hemma.experiment.case import Case
 from hemma.experiment.fingerprint import fingerprint
 from hemma.experiment.identify import Identification
-from hemma.experiment.store import FINGERPRINT, Store, read_json, write_json
+from hemma.experiment.store import Store
 from hemma.expert.demonstrations import (
     Demonstrations,
     TracesOrigin,
@@ -82,18 +82,19 @@ class Expert:
 def demonstration(store: Store, expert: Expert, days: int) -> Demonstration:
     """Let the expert demonstrate ``days`` days, or take what it demonstrated in an earlier run."""
     mark = fingerprint(STAGE, expert.mark, days)
-    path = store.model(f"demonstrations-{days}-days.safetensors")
-    card = path.with_suffix(".json")
-    if store.holds(card, mark) and path.is_file():
-        store.progress.reused(STAGE, read_json(card)["message"])
+    product = f"demonstrations-{days}-days"
+    file = store.model(f"{product}.safetensors")
+    content = store.kept(product, mark)
+    if content is not None:
+        store.progress.reused(STAGE, content["message"])
     else:
         begun = time.monotonic()
         shown = expert.demonstrations(days, store)
-        save_demonstrations(path, shown)
+        save_demonstrations(store.folder / file, shown)
         deviation = np.mean(expert.case.home.comfort.deviation(shown.next_states[:, INDOOR]))
         message = f"{days} days, {shown.samples} transitions, mean deviation {float(deviation):.3f} °C"
-        write_json(card, {FINGERPRINT: mark, "message": message, "seconds": time.monotonic() - begun})
+        store.keep(product, mark, [file], {"message": message, "seconds": time.monotonic() - begun})
         store.progress.finished(STAGE, message)
-    kept = load_demonstrations(path)
+    kept = load_demonstrations(store.folder / file)
     arrays = (jnp.asarray(a, float) for a in (kept.states, kept.actions, kept.next_states))
     return Demonstration(days, Demonstrated(*arrays), mark)

@@ -4,27 +4,27 @@ import csv
 import io
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import jax
 import numpy as np
 
-from hemma.checkpoint import load_header, load_tree, save_tree, write_atomically
+from hemma.checkpoint import write_atomically
 from hemma.experiment.case import Case
 from hemma.experiment.fingerprint import fingerprint
 from hemma.experiment.results import FreeRunError, Identified
-from hemma.experiment.store import FINGERPRINT, Store
+from hemma.experiment.store import Store
 from hemma.identification.excitation import excite
 from hemma.identification.fit import fit
-from hemma.identification.pcnn import (
-    InputScaling,
-    PcnnWeights,
-    PhysicallyConsistentNetwork,
-    ThermalResponse,
-)
+from hemma.identification.pcnn import PhysicallyConsistentNetwork
 from hemma.identification.record import ThermalRecord
-from hemma.identification.validation import free_run, free_run_errors
+from hemma.identification.store import load_model, save_model
+from hemma.identification.validation import FreeRunErrors, free_run, free_run_errors
 
 STAGE = "identify"
+PRODUCT, NETWORK = "network", "network.safetensors"
+SEED = 0
+"""Of the excitation and of the fit."""
 
 
 @dataclass(frozen=True)
@@ -40,22 +40,21 @@ def identify(case: Case, store: Store) -> Identification:
     """Fit the network to a simulated, excited training period; measure it free-running in the test period."""
     settings = case.experiment.identification
     mark = fingerprint(STAGE, case.mark, case.experiment.excitation, settings)
-    path = store.model("network.safetensors")
-    if store.holds(path, mark, [store.free_run]):
-        found = _found(load_header(path), store)
+    content = store.kept(PRODUCT, mark)
+    if content is not None:
+        found = _found(content, store)
         store.progress.reused(STAGE, _message(found))
     else:
         found = _fit(case, store, mark)
         store.progress.finished(STAGE, _message(found))
-    model = load_tree(path, _structure(settings.width, settings.depth))
-    return Identification(model, found, mark)
+    return Identification(load_model(store.folder / store.model(NETWORK)), found, mark)
 
 
 def _fit(case: Case, store: Store, mark: str) -> Identified:
     settings, excitation = case.experiment.identification, case.experiment.excitation
     store.progress.started(STAGE, settings.updates)
     begun = time.monotonic()
-    training_key, test_key, fit_key = jax.random.split(jax.random.key(0), 3)
+    training_key, test_key, fit_key = jax.random.split(jax.random.key(SEED), 3)
     record = excite(case.home, case.training, excitation, training_key)
     fitted = fit(
         record, settings, fit_key, on_progress=lambda done, _: store.progress.advanced(STAGE, done, "")
@@ -63,16 +62,14 @@ def _fit(case: Case, store: Store, mark: str) -> Identified:
     test = excite(case.home, case.test, excitation, test_key)
     errors = free_run_errors(fitted.model, test)
     _write_free_run(case, store, fitted.model, test)
-    header = {
-        FINGERPRINT: mark,
-        "seconds": time.monotonic() - begun,
-        "errors": [[h, float(e)] for h, e in _horizons(errors)],
-    }
-    save_tree(store.model("network.safetensors"), fitted.model, header)
-    return _found(header, store)
+    save_model(store.folder / store.model(NETWORK), fitted, SEED)
+    errors = [[horizon, float(error)] for horizon, error in _horizons(errors)]
+    content = {"seconds": time.monotonic() - begun, "errors": errors}
+    store.keep(PRODUCT, mark, [store.model(NETWORK), store.free_run], content)
+    return _found(content, store)
 
 
-def _horizons(errors) -> list[tuple[str, float]]:
+def _horizons(errors: FreeRunErrors) -> list[tuple[str, float]]:
     return [
         ("1 h", errors.one_hour),
         ("6 h", errors.six_hours),
@@ -81,13 +78,13 @@ def _horizons(errors) -> list[tuple[str, float]]:
     ]
 
 
-def _found(header: dict, store: Store) -> Identified:
-    errors = tuple(FreeRunError(horizon, error) for horizon, error in header["errors"])
-    return Identified(errors=errors, free_run=store.free_run, seconds=header["seconds"])
+def _found(content: dict[str, Any], store: Store) -> Identified:
+    errors = tuple(FreeRunError(horizon, error) for horizon, error in content["errors"])
+    return Identified(errors=errors, free_run=store.free_run, seconds=content["seconds"])
 
 
 def _message(found: Identified) -> str:
-    return "free-run error " + ", ".join(f"{e.error:.3f} °C after {e.horizon}" for e in found.errors[:3])
+    return "free-run error " + ", ".join(f"{e.error:.2g} °C after {e.horizon}" for e in found.errors[:3])
 
 
 def _write_free_run(
@@ -101,13 +98,3 @@ def _write_free_run(
     rows = np.column_stack([np.asarray(column, float) for column in columns]).tolist()
     writer.writerows([stamp, *row] for stamp, row in zip(case.parts.test.time_stamps(), rows, strict=True))
     write_atomically(store.folder / store.free_run, text.getvalue().encode())
-
-
-def _structure(width: int, depth: int) -> PhysicallyConsistentNetwork:
-    """A network of these sizes, to be filled from a checkpoint."""
-    return PhysicallyConsistentNetwork(
-        weights=PcnnWeights.create(jax.random.key(0), width, depth),
-        start=ThermalResponse(heating=1.0, cooling=1.0, loss=0.5),
-        scaling=InputScaling(temperature_mean=0.0, temperature_deviation=1.0, pv_peak=1.0),
-        slot_length=1.0,
-    )

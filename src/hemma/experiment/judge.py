@@ -3,14 +3,13 @@
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from pathlib import Path
 
 from hemma.baselines.optimum import OptimumProblem, optimum_problem
 from hemma.evaluation import EqualComfort, Metrics, Outcome, measure, write_exogenous, write_schedule
 from hemma.experiment.case import Case
 from hemma.experiment.fingerprint import fingerprint
 from hemma.experiment.results import Run
-from hemma.experiment.store import FINGERPRINT, Store, read_json, write_json
+from hemma.experiment.store import Store
 
 STAGE = "evaluate"
 
@@ -40,24 +39,19 @@ class Judge:
     def judged(self, label: str, mark: str, play: Callable[[], Sequence[Played]]) -> tuple[Run, ...]:
         """The runs of ``label``, which depend on ``mark``: measured now, or kept from an earlier run."""
         mark = fingerprint(STAGE, label, self.case.mark, mark)
-        path = self.store.model(f"{_slug(label)}.runs.json")
-        runs = self._kept(path, mark)
-        if runs is None:
-            runs = tuple(self._measured(label, played) for played in play())
-            write_json(path, {FINGERPRINT: mark, "runs": [asdict(run) for run in runs]})
+        product = f"{_slug(label)}.runs"
+        content = self.store.kept(product, mark)
+        if content is not None:
+            return tuple(Run(**{**run, "metrics": Metrics(**run["metrics"])}) for run in content["runs"])
+        runs = tuple(self._measured(label, played) for played in play())
+        files = [name for run in runs for name in (run.schedule, run.curve) if name is not None]
+        self.store.keep(product, mark, files, {"runs": [asdict(run) for run in runs]})
         return runs
 
     def write_exogenous(self) -> None:
         """Write what the home did not decide in the test period, beside the schedules."""
         path = self.store.folder / self.store.schedule("exogenous.csv")
         write_exogenous(path, self.case.parts.test.time_stamps(), self.case.test)
-
-    def _kept(self, path: Path, mark: str) -> tuple[Run, ...] | None:
-        if self.store.fingerprint(path) != mark:
-            return None
-        runs = tuple(Run(**{**run, "metrics": Metrics(**run["metrics"])}) for run in read_json(path)["runs"])
-        files = [name for run in runs for name in (run.schedule, run.curve) if name is not None]
-        return runs if self.store.holds(path, mark, files) else None
 
     def _measured(self, label: str, played: Played) -> Run:
         file = _slug(label) + (".csv" if played.seed is None else f"-{played.seed}.csv")

@@ -17,7 +17,7 @@ from hemma.expert.hvac import DescentSettings
 from hemma.expert.programme import SolverSettings
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Hvac
 from hemma.identification.excitation import Excitation
-from hemma.identification.fit import IdentificationSettings
+from hemma.identification.settings import IdentificationSettings
 from hemma.types import Scalar
 
 NAMES: dict[type, dict[str, str]] = {

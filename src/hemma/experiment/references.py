@@ -1,6 +1,7 @@
 """Stage: the methods that are not learned, from the thermostat to perfect information."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 
 import jax
 
@@ -12,7 +13,6 @@ from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import fingerprint
 from hemma.experiment.judge import Judge, Played
 from hemma.experiment.results import MethodResults, PlainOptimum
-from hemma.experiment.store import FINGERPRINT, read_json, write_json
 from hemma.home import Controller, Schedule
 
 STAGE = "baselines"
@@ -44,16 +44,16 @@ def references(case: Case, judge: Judge, expert: Expert) -> tuple[MethodResults,
 
 def plain_optimum(case: Case, judge: Judge) -> PlainOptimum:
     """Perfect information with the least reachable deviation, and its proof."""
-    path, mark = judge.store.model("optimum.json"), fingerprint("optimum", case.mark)
-    if not judge.store.holds(path, mark):
-        found = judge.problem.solve()
-        content = {
-            "energy_cost": found.cost,
-            "mean_temperature_deviation": found.deviation / case.test.slots,
-            "bound": found.bound,
-            "relative_gap": found.gap,
-        }
-        write_json(path, {FINGERPRINT: mark, **content})
-    content = read_json(path)
-    del content[FINGERPRINT]
-    return PlainOptimum(**content)
+    mark = fingerprint("optimum", case.mark)
+    content = judge.store.kept("optimum", mark)
+    if content is not None:
+        return PlainOptimum(**content)
+    found = judge.problem.solve()
+    optimum = PlainOptimum(
+        energy_cost=found.cost,
+        mean_temperature_deviation=found.deviation / case.test.slots,
+        bound=found.bound,
+        relative_gap=found.gap,
+    )
+    judge.store.keep("optimum", mark, [], asdict(optimum))
+    return optimum

@@ -1,5 +1,6 @@
 """The main job, stage by stage: traces in, one results folder out."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum, auto
@@ -63,6 +64,7 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     progress = Silence() if progress is None else progress
     _require_different_names(job.homes)
     cases = [make_case(job.experiment, traces, job.test_from) for traces in job.homes]
+    _require_writable(job.folder)
     ledger = open_ledger(job.folder, Head(job.command, outside(job.experiment)), progress)
     for case in cases:
         _HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)
@@ -144,6 +146,18 @@ def _require_different_names(homes: Sequence[Traces]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise HemmaError(f"expected homes with different names, got {name} twice; name each of them once")
+
+
+def _require_writable(folder: Path) -> None:
+    """Find out before hours of work that there is nowhere to put them."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise HemmaError(
+            f"{folder}: expected a results folder, cannot make it: {error.strerror}. Choose another: --out"
+        ) from error
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise HemmaError(f"{folder}: expected a results folder that may be written. Choose another: --out")
 
 
 def _report(folder: Path, progress: Progress) -> None:

@@ -7,7 +7,7 @@ from hemma.expert.hierarchy import HierarchySettings
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Home, Hvac
 from hemma.home.checks import require
 from hemma.identification.excitation import Excitation
-from hemma.identification.fit import IdentificationSettings
+from hemma.identification.settings import IdentificationSettings
 from hemma.irl.airl import AIRLSettings
 
 

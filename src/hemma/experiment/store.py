@@ -1,29 +1,31 @@
 """The products of the stages on disk: what an interrupted run keeps and a repeated one uses again."""
 
+import hashlib
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hemma.checkpoint import load_header, write_atomically
-from hemma.errors import HemmaError
+from hemma.checkpoint import write_atomically
 from hemma.experiment.progress import Progress
-
-FINGERPRINT = "fingerprint"
 
 
 @dataclass(frozen=True)
 class Store:
-    """The results folder, as far as one home is concerned."""
+    """The results folder, as far as one home is concerned.
+
+    Every product has a card: a JSON file with the fingerprint of all that the product depends on, the
+    digests of its files, and its content as far as that is small.
+    """
 
     folder: Path
     home: str
     progress: Progress
 
-    def model(self, file: str) -> Path:
-        """Where a product of this home lies."""
-        return self.folder / "models" / self.home / file
+    def model(self, file: str) -> str:
+        """Name, inside the folder, of a product of this home."""
+        return f"models/{self.home}/{file}"
 
     def schedule(self, file: str) -> str:
         """Name, inside the folder, of a schedule of this home."""
@@ -38,30 +40,30 @@ class Store:
         """Name, inside the folder, of the free run of the identified network."""
         return f"identification/{self.home}.csv"
 
-    def holds(self, path: Path, mark: str, files: Iterable[str] = ()) -> bool:
-        """Whether a product with this fingerprint, and the ``files`` that came with it, lie there whole."""
-        return self.fingerprint(path) == mark and all((self.folder / name).is_file() for name in files)
+    def keep(self, product: str, mark: str, files: Iterable[str], content: dict[str, Any]) -> None:
+        """Write the card of a product whose ``files`` (names inside the folder) have just been written."""
+        digests = {name: _digest(self.folder / name) for name in files}
+        card = {"fingerprint": mark, "files": digests, "content": content}
+        write_atomically(self._card(product), json.dumps(card, indent=1, allow_nan=False).encode())
 
-    def fingerprint(self, path: Path) -> str | None:
-        """Fingerprint of the product that lies there; None where there is none that can be read."""
+    def kept(self, product: str, mark: str) -> dict[str, Any] | None:
+        """The content of a card with this fingerprint; None if there is none or a file of it was changed."""
         try:
-            header = load_header(path) if path.suffix == ".safetensors" else read_json(path)
-        except HemmaError:
+            card = json.loads(self._card(product).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
             return None
-        return header.get(FINGERPRINT)
+        if not isinstance(card, dict) or card.get("fingerprint") != mark:
+            return None
+        unchanged = all(_digest(self.folder / name) == digest for name, digest in card["files"].items())
+        return card["content"] if unchanged else None
+
+    def _card(self, product: str) -> Path:
+        return self.folder / self.model(f"{product}.json")
 
 
-def read_json(path: Path) -> dict[str, Any]:
-    """A product that is a JSON object."""
+def _digest(path: Path) -> str | None:
+    """SHA-256 of a file, None where it cannot be read."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise HemmaError(f"{path}: expected a product of Hemma (JSON), cannot read it: {error}") from error
-    if not isinstance(content, dict):
-        raise HemmaError(f"{path}: expected a JSON object, found a {type(content).__name__}")
-    return content
-
-
-def write_json(path: Path, content: dict[str, Any]) -> None:
-    """Write a product as JSON, whole or not at all."""
-    write_atomically(path, json.dumps(content, indent=1, allow_nan=False).encode())
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return None

@@ -4,17 +4,19 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
+from pathlib import Path
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 
 from hemma.checkpoint import load_header, load_tree, save_tree
+from hemma.errors import HemmaError
 from hemma.experiment.case import Case
 from hemma.experiment.curves import write_curves
 from hemma.experiment.demonstrate import Demonstration
 from hemma.experiment.fingerprint import fingerprint
-from hemma.experiment.store import FINGERPRINT, Store
+from hemma.experiment.store import Store
 from hemma.irl.airl import AIRLSettings
 from hemma.irl.task import Task, make_task, stack
 from hemma.irl.training import Training, begin, controllers, load, save, train
@@ -57,9 +59,9 @@ class _Classroom:
     store: Store
 
     @property
-    def under_way(self):
+    def under_way(self) -> Path:
         """Where the state of an unfinished training lies."""
-        return self.store.model(f"{self.label}.training.safetensors")
+        return self.store.folder / self.store.model(f"{self.label}.training.safetensors")
 
     def train(self) -> tuple[Training, float]:
         """Train to the end, from where an interrupted run stopped; also the seconds it took in total."""
@@ -83,16 +85,20 @@ class _Classroom:
         return training, clock.seconds
 
     def _earlier(self) -> tuple[Training | None, float]:
-        if not self.store.holds(self.under_way, self.mark):
+        try:
+            header = load_header(self.under_way)
+        except HemmaError:
+            return None, 0.0
+        if header.get("fingerprint") != self.mark:
             return None, 0.0
         training = load(self.under_way, self.task, self.settings)
         self.store.progress.noticed(
             f"{self.label}: going on from iteration {training.iterations} of an interrupted run"
         )
-        return training, load_header(self.under_way)["seconds"]
+        return training, header["seconds"]
 
     def _save(self, training: Training, clock: "_Clock") -> None:
-        save(self.under_way, training, {FINGERPRINT: self.mark, "seconds": clock.seconds})
+        save(self.under_way, training, {"fingerprint": self.mark, "seconds": clock.seconds})
         clock.saved()
 
 
@@ -139,20 +145,23 @@ def train_lesson(lesson: Lesson, task: Task, case: Case, store: Store) -> Traine
     """
     settings, label = case.experiment.airl, lesson.label
     mark = fingerprint(STAGE, case.home, settings, lesson.demonstration.mark, lesson.seeds)
-    path = store.model(f"{label}.safetensors")
+    file = store.model(f"{label}.safetensors")
     curves = tuple(store.curve(f"{label}-{seed}.csv") for seed in range(lesson.seeds))
-    if store.holds(path, mark, curves):
+    content = store.kept(label, mark)
+    if content is not None:
         store.progress.reused(label, f"{lesson.seeds} runs")
     else:
         store.progress.started(label, settings.iterations)
         classroom = _Classroom(label, task, settings, mark, store)
         training, seconds = classroom.train()
         write_curves(store.folder, curves, training.curve, case.home)
-        save_tree(path, controllers(training, task), {FINGERPRINT: mark, "seconds": seconds})
+        content = {"seconds": seconds}
+        save_tree(store.folder / file, controllers(training, task), {"fingerprint": mark})
+        store.keep(label, mark, [file, *curves], content)
         classroom.under_way.unlink(missing_ok=True)
         store.progress.finished(label, f"{lesson.seeds} runs side by side. {_message(training)}")
-    stored = load_tree(path, _structure(task, settings))
-    return Trained(stored, curves, load_header(path)["seconds"], mark)
+    stored = load_tree(store.folder / file, _structure(task, settings))
+    return Trained(stored, curves, content["seconds"], mark)
 
 
 def _structure(task: Task, settings: AIRLSettings) -> PolicyController:
