@@ -2,8 +2,10 @@
 
     python benchmarks/identification.py simulated     homes of known equations, excited in June and July
     python benchmarks/identification.py logged        what the thermostats of the embedded homes logged
+    python benchmarks/identification.py trials        other settings, on the days before August alone
 
-The numbers stand in docs/identification.md. Errors are on August; "physical" is the start, f = 0.
+The numbers stand in docs/identification.md. Errors [degC] are on August except in the trials; "physical"
+is the start, f = 0.
 """
 
 import sys
@@ -164,18 +166,65 @@ def simulated() -> None:
 def logged() -> None:
     """The embedded homes as their own thermostats ran them."""
     for number in AUSTIN2021_HOMES:
-        traces = load_austin2021(number)
-        assert traces.indoor_temperature is not None
-        assert traces.hvac_power is not None
-        record = logged_record(
-            benchmark_home(), traces.exogenous, traces.indoor_temperature, traces.hvac_power
-        )
+        record = log_of(number)
         test = record.window(AUGUST, record.slots)
         for days in (61, 15):
             show(f"home {number}, logged", days, record.window(AUGUST - 24 * days, AUGUST), test, None)
 
 
+def log_of(number: int) -> ThermalRecord:
+    """The logged temperatures and powers of an embedded home."""
+    traces = load_austin2021(number)
+    assert traces.indoor_temperature is not None
+    assert traces.hvac_power is not None
+    return logged_record(benchmark_home(), traces.exogenous, traces.indoor_temperature, traces.hvac_power)
+
+
+TRIALS = {
+    "default": IdentificationSettings(),
+    "gain_penalty 0": IdentificationSettings(gain_penalty=0.0),
+    "gain_penalty 0.1": IdentificationSettings(gain_penalty=0.1),
+    "gain_penalty 1": IdentificationSettings(gain_penalty=1.0),
+    "window 24 h": IdentificationSettings(window=24.0),
+    "window 72 h": IdentificationSettings(window=72.0),
+    "learning_rate 5e-4 (the paper's)": IdentificationSettings(learning_rate=5e-4),
+    "learning_rate 3e-3": IdentificationSettings(learning_rate=3e-3),
+    "depth 2": IdentificationSettings(depth=2),
+    "width 64": IdentificationSettings(width=64),
+    "least_improvement 0": IdentificationSettings(least_improvement=0.0),
+}
+
+
+def trials() -> None:
+    """Each setting on 15 days to mid July (simulated) or 45 (logged), tested on 16 to 31 July."""
+    middle = AUGUST - 16 * 24
+    exogenous = load_austin2021(1).exogenous
+    chosen = [case for case in cases(exogenous) if case.name.startswith("summer,")]
+    logs = []
+    for number in AUSTIN2021_HOMES:
+        log = log_of(number)
+        logs.append((log.window(0, middle), log.window(middle, AUGUST)))
+    print(f"{'trial':34s} {' '.join(f'{case.name[8:]:>16s}' for case in chosen)}  logged: 24 h, 16 days")
+    for name, settings in TRIALS.items():
+        print(f"{name:34s}", end="", flush=True)
+        for case in chosen:
+            record = excite(
+                case.home, exogenous.window(middle - 360, middle), Excitation(), jax.random.key(1)
+            )
+            still = replace(case.home, disturbance_deviation=0.0)
+            test = excite(still, exogenous.window(middle, AUGUST), Excitation(), jax.random.key(2))
+            model = fit(record, settings, jax.random.key(0), case.start).model
+            print(f" {free_run_errors(model, test).month:16.4f}", end="", flush=True)
+        errors = [free_run_errors(fit(a, settings, jax.random.key(0)).model, b) for a, b in logs]
+        print(
+            f"  {np.mean([e.day for e in errors]):12.3f} {np.mean([e.month for e in errors]):8.3f}",
+            flush=True,
+        )
+
+
 if __name__ == "__main__":
-    columns = "    1 h    6 h    24 h  month"
-    print(f"{'case':34s} days    s {columns} physical {columns} network")
-    {"simulated": simulated, "logged": logged}[sys.argv[1]]()
+    columns = "   1 h    6 h   24 h  month"
+    if sys.argv[1] != "trials":
+        print(f"{'':34s}            {'physical':27s}   network")
+        print(f"{'case':33s} days     s {columns}   {columns}")
+    {"simulated": simulated, "logged": logged, "trials": trials}[sys.argv[1]]()
