@@ -17,8 +17,9 @@ INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it."""
 SILENCE = 10.0
 """Seconds between two lines of a stage where there is no terminal."""
-WIDTH = 200
-"""Columns of a table that does not go to a terminal."""
+WIDTH = 120
+"""Characters of a line that does not go to a terminal."""
+COLUMNS = ("Runs", "Energy cost", "Mean deviation", "Gap to optimum", "Share of savings", "Training")
 
 
 @contextmanager
@@ -95,17 +96,27 @@ def show_results(folder: Path, content: Any) -> None:
 
 
 def print_table(folder: Path) -> None:
-    """The table of a results folder, home by home."""
+    """The main columns of the results, home by home; the report has all of them."""
     from rich.console import Console
     from rich.table import Table
 
-    from hemma.report import TABLE_HEADINGS, results_table
+    from hemma.report import results_table
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
     rows = results_table(folder)
     for home in dict.fromkeys(row.home for row in rows):
-        table = Table(*TABLE_HEADINGS, title=home)
+        table = Table("Method", title=f"{home}: mean of the runs, and its 95 % interval")
+        for heading in COLUMNS:
+            table.add_column(heading, justify="right")
         for row in rows:
             if row.home == home:
-                table.add_row(*row.cells)
+                cells = (
+                    row.seeds,
+                    row.energy_cost,
+                    row.mean_temperature_deviation,
+                    row.gap_to_optimum,
+                    row.share_of_savings,
+                    row.seconds_to_train,
+                )
+                table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in cells))
         console.print(table)

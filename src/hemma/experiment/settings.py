@@ -80,6 +80,6 @@ def quick(experiment: Experiment) -> Experiment:
     return replace(
         experiment,
         seeds=min(experiment.seeds, 2),
-        airl=replace(experiment.airl, iterations=min(experiment.airl.iterations, 200)),
+        airl=replace(experiment.airl, iterations=min(experiment.airl.iterations, 400)),
         data_efficiency=replace(experiment.data_efficiency, days=(3,), seeds=min(experiment.seeds, 2)),
     )
