@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import hemma
-from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.fingerprint import code, fingerprint, source_digest
 from hemma.experiment.settings import Experiment
 from hemma.home import Battery, Home
 
@@ -62,3 +62,27 @@ def test_arrays_of_jax_count_like_those_of_numpy():
     assert fingerprint("x", jnp.arange(3, dtype=jnp.float32)) == fingerprint(
         "x", np.arange(3, dtype=np.float32)
     )
+
+
+def test_a_changed_renamed_or_added_source_file_shows(tmp_path):
+    layer = tmp_path / "rl"
+    (layer / "deep").mkdir(parents=True)
+    (layer / "ppo.py").write_text("gamma = 0.95\n")
+    (layer / "deep" / "net.py").write_text("width = 64\n")
+    (layer / "notes.txt").write_text("not code")
+    seen = {source_digest([layer])}
+    (layer / "notes.txt").write_text("still not code")
+    assert source_digest([layer]) in seen
+    for change in (
+        lambda: (layer / "deep" / "net.py").write_text("width = 32\n"),
+        lambda: (layer / "ppo.py").rename(layer / "trpo.py"),
+        lambda: (layer / "new.py").write_text(""),
+    ):
+        change()
+        digest = source_digest([layer])
+        assert digest not in seen
+        seen.add(digest)
+
+
+def test_layers_have_digests_of_their_own():
+    assert code("rl") != code("irl") != code("rl", "irl")

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from hemma.data import Split, Traces, split
 from hemma.errors import HemmaError
-from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.results import HomeResults, Period
 from hemma.experiment.settings import Experiment
 from hemma.home import Home
@@ -58,7 +58,7 @@ def make_case(experiment: Experiment, traces: Traces, test_from: str | None = No
     """Cut the traces (by default the last 31 days are the test) and build the home for their slot length."""
     parts = split(traces, test_from)
     home = experiment.home(traces.slot_length)
-    mark = fingerprint("case", traces.sha256, traces.exogenous, parts.training.slots, home)
+    mark = fingerprint("case", code("home"), traces.sha256, traces.exogenous, parts.training.slots, home)
     return Case(experiment, traces, parts, home, mark)
 
 

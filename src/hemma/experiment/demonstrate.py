@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hemma.experiment.case import Case
-from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.identify import Identification
 from hemma.experiment.store import Store
 from hemma.expert.demonstrations import (
@@ -48,7 +48,7 @@ class Expert:
     @property
     def mark(self) -> str:
         """Fingerprint of all that the expert's decisions depend on besides the period."""
-        return fingerprint("expert", self.identification.mark, self.case.experiment.expert)
+        return fingerprint("expert", code("expert"), self.identification.mark, self.case.experiment.expert)
 
     @property
     def planning_home(self) -> Home:

@@ -11,7 +11,7 @@ import numpy as np
 
 from hemma.checkpoint import write_atomically
 from hemma.experiment.case import Case
-from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.results import FreeRunError, Identified
 from hemma.experiment.store import Store
 from hemma.identification.excitation import excite
@@ -39,7 +39,7 @@ class Identification:
 def identify(case: Case, store: Store) -> Identification:
     """Fit the network to a simulated, excited training period; measure it free-running in the test period."""
     settings = case.experiment.identification
-    mark = fingerprint(STAGE, case.mark, case.experiment.excitation, settings)
+    mark = fingerprint(STAGE, code("identification"), case.mark, case.experiment.excitation, settings)
     content = store.kept(PRODUCT, mark)
     if content is not None:
         found = _found(content, store)

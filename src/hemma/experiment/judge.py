@@ -7,11 +7,12 @@ from functools import cached_property
 from hemma.baselines.optimum import OptimumProblem, optimum_problem
 from hemma.evaluation import EqualComfort, Metrics, Outcome, measure, write_exogenous, write_schedule
 from hemma.experiment.case import Case
-from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.results import Run
 from hemma.experiment.store import Store
 
 STAGE = "evaluate"
+CODE = code("evaluation", "baselines", "expert")
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Judge:
 
     def judged(self, label: str, mark: str, play: Callable[[], Sequence[Played]]) -> tuple[Run, ...]:
         """The runs of ``label``, which depend on ``mark``: measured now, or kept from an earlier run."""
-        mark = fingerprint(STAGE, label, self.case.mark, mark)
+        mark = fingerprint(STAGE, label, CODE, self.case.mark, mark)
         product = f"{_slug(label)}.runs"
         content = self.store.kept(product, mark)
         if content is not None:

@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import hemma
 from hemma.experiment.progress import Progress
 from hemma.experiment.results import (
     RESULTS_FILE,
@@ -58,7 +57,8 @@ def open_ledger(folder: Path, head: Head, progress: Progress) -> Ledger:
     if not isinstance(earlier, dict) or not isinstance(earlier.get("homes"), dict):
         return ledger
     ledger.stale = _files(earlier["homes"])
-    if earlier.get("settings") == head.settings and earlier.get("hemma") == hemma.__version__:
+    now = ledger.content
+    if all(earlier.get(key) == now[key] for key in ("schema", "hemma", "code", "settings")):
         ledger.homes = earlier["homes"]
     else:
         progress.noticed(

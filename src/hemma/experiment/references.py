@@ -11,7 +11,7 @@ from hemma.evaluation import evaluate
 from hemma.experiment.case import Case
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import fingerprint
-from hemma.experiment.judge import Judge, Played
+from hemma.experiment.judge import CODE, Judge, Played
 from hemma.experiment.results import MethodResults, PlainOptimum
 from hemma.home import Controller, Schedule
 
@@ -44,7 +44,7 @@ def references(case: Case, judge: Judge, expert: Expert) -> tuple[MethodResults,
 
 def plain_optimum(case: Case, judge: Judge) -> PlainOptimum:
     """Perfect information with the least reachable deviation, and its proof."""
-    mark = fingerprint("optimum", case.mark)
+    mark = fingerprint("optimum", CODE, case.mark)
     content = judge.store.kept("optimum", mark)
     if content is not None:
         return PlainOptimum(**content)

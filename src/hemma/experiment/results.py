@@ -10,9 +10,12 @@ from typing import Any
 import hemma
 from hemma.checkpoint import write_atomically
 from hemma.evaluation import Metrics, summarise
+from hemma.experiment.fingerprint import code
 
 SCHEMA = 1
 RESULTS_FILE = "results.json"
+CODE = code("home", "identification", "expert", "rl", "irl", "baselines", "evaluation")
+"""Of all that numbers in the file come from."""
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,7 @@ def document(head: Head, homes: dict[str, Any]) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "hemma": hemma.__version__,
+        "code": CODE,
         "command": head.command,
         "settings": head.settings,
         "homes": homes,

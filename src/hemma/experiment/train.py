@@ -15,7 +15,7 @@ from hemma.errors import HemmaError
 from hemma.experiment.case import Case
 from hemma.experiment.curves import write_curves
 from hemma.experiment.demonstrate import Demonstration
-from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.store import Store
 from hemma.irl.airl import AIRLSettings
 from hemma.irl.task import Task, make_task, stack
@@ -144,7 +144,7 @@ def train_lesson(lesson: Lesson, task: Task, case: Case, store: Store) -> Traine
     The learning curves are written beside the controllers.
     """
     settings, label = case.experiment.airl, lesson.label
-    mark = fingerprint(STAGE, case.home, settings, lesson.demonstration.mark, lesson.seeds)
+    mark = fingerprint(STAGE, code("rl", "irl"), case.home, settings, lesson.demonstration.mark, lesson.seeds)
     file = store.model(f"{label}.safetensors")
     curves = tuple(store.curve(f"{label}-{seed}.csv") for seed in range(lesson.seeds))
     content = store.kept(label, mark)
