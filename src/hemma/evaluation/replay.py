@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from hemma.home import Controller, Home, Trajectory, replay
 from hemma.home.precision import in_double
-from hemma.types import Array, Exogenous
+from hemma.types import Array, Exogenous, Scalar
 
 
 @dataclass(frozen=True)
