@@ -70,7 +70,7 @@ def evaluate_stacked(
 
 
 def _run(
-    home: Home, exogenous: Exogenous, controller: Controller, key: Array, deviation: Array
+    home: Home, exogenous: Exogenous, controller: Controller, key: Array, deviation: Scalar
 ) -> Trajectory:
     home = eqx.tree_at(lambda h: h.disturbance_deviation, home, deviation)
     return replay(home, exogenous, controller, home.reset(), key)
