@@ -12,7 +12,7 @@ import pytest
 from hemma.errors import HemmaError
 from hemma.home import Home, observe, paper_state
 from hemma.irl import training
-from hemma.irl.airl import AIRLSettings
+from hemma.irl.airl import AIRLSettings, deviation_at
 from hemma.irl.discriminator import cross_entropy, gradient_penalty, logits
 from hemma.irl.reward import ShapedReward
 from hemma.irl.task import Demonstrated, make_task, stack
@@ -129,6 +129,15 @@ def test_gradient_penalty_is_zero_for_a_flat_reward_and_grows_with_slope():
     steep = jax.tree.map(lambda w: 10.0 * w, reward)
     assert float(gradient_penalty(flat, *batches, jax.random.key(0))) == 0.0
     assert float(gradient_penalty(steep, *batches, jax.random.key(0))) > 10.0
+
+
+def test_deviation_shrinks_geometrically_and_then_stays():
+    settings = AIRLSettings(
+        iterations=100, first_deviation=(0.4, 0.2), last_deviation=(0.1, 0.2), shrinking=0.5
+    )
+    np.testing.assert_allclose(deviation_at(jnp.asarray(0), settings), [0.4, 0.2], rtol=1e-6)
+    np.testing.assert_allclose(deviation_at(jnp.asarray(25), settings), [0.2, 0.2], rtol=1e-6)
+    np.testing.assert_allclose(deviation_at(jnp.asarray(90), settings), [0.1, 0.2], rtol=1e-6)
 
 
 def test_padding_is_never_read():

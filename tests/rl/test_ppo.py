@@ -1,5 +1,6 @@
 """PPO: its formulas by hand, and worlds whose best policy is known."""
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -9,7 +10,7 @@ from scipy.stats import norm
 from hemma.home import Home
 from hemma.rl import ppo
 from hemma.rl.environment import Environment, collect
-from hemma.rl.policy import log_density
+from hemma.rl.policy import GaussianPolicy, log_density
 from hemma.rl.ppo import Objective, PPOSettings, advantages
 from hemma.rl.scaling import fit_scaler
 from hemma.types import Exogenous
@@ -73,6 +74,19 @@ def test_log_density_is_that_of_independent_gaussians():
     expected = norm.logpdf(actions, mean, deviation).sum(axis=1)
     computed = log_density(*(jnp.asarray(x, float) for x in (actions, mean, deviation)))
     np.testing.assert_allclose(computed, expected, rtol=1e-4)
+
+
+def test_the_mean_is_affine_within_the_bounds_and_bent_beyond():
+    policy = GaussianPolicy((8,), jax.random.key(0))
+    weights = jnp.zeros((2, 8)).at[0, 5].set(1.0).at[1, 4].set(2.0)
+    policy = eqx.tree_at(
+        lambda p: (p.linear, p.bias, p.network.weights),
+        policy,
+        (weights, jnp.asarray([0.1, -0.5]), tuple(jnp.zeros_like(w) for w in policy.network.weights)),
+    )
+    features = jnp.zeros((3, 8)).at[:, 5].set(jnp.asarray([0.3, 2.9, -3.1])).at[:, 4].set(0.5)
+    expected = [[0.4, 0.5], [1 + 0.05 * 2.0, 0.5], [-1 - 0.05 * 2.0, 0.5]]
+    np.testing.assert_allclose(jax.vmap(policy.mean)(features), expected, atol=1e-6)
 
 
 def test_a_rollout_replays_consecutive_slots_of_the_traces():

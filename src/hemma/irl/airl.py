@@ -24,8 +24,12 @@ class AIRLSettings:
 
     iterations: int = 1000
     """N."""
-    deviation: tuple[float, float] = (0.2, 0.1)
-    """sigma, standard deviation of the policy's fractions (battery, HVAC) and of the expert's jitter."""
+    first_deviation: tuple[float, float] = (0.2, 0.15)
+    """sigma at the first iteration: standard deviation of the policy's fractions (battery, HVAC) and of the
+    expert's jitter."""
+    last_deviation: tuple[float, float] = (0.2, 0.05)
+    """sigma once it has shrunk, geometrically, over the first ``shrinking`` of the iterations."""
+    shrinking: float = 0.8
     agent_rollouts: int = 16
     """Rollouts collected for the discriminator in an iteration."""
     replayed: int = 8
@@ -85,13 +89,21 @@ class Progress(eqx.Module):
     """Mean X3 of the exploring agent [degC]; shown, never used."""
 
 
+def deviation_at(iteration: Array, settings: AIRLSettings) -> Float[Array, "actions"]:
+    """sigma at an iteration: coarse strokes first, fine ones later."""
+    first, last = jnp.asarray(settings.first_deviation), jnp.asarray(settings.last_deviation)
+    share = jnp.minimum(iteration / (settings.shrinking * settings.iterations), 1.0)
+    return first * (last / first) ** share
+
+
 def start(environment: Environment, settings: AIRLSettings, key: Array) -> TrainingState:
     """Initial policy pi_0 and reward r_0; the replay is filled with transitions of pi_0."""
     learner_key, reward_key, replay_key, key = jax.random.split(key, 4)
     learner = ppo.start(settings.ppo, learner_key)
     reward = ShapedReward(settings.hidden, settings.ppo.discount, reward_key)
+    deviation = deviation_at(jnp.zeros(()), settings)
     keys = jax.random.split(replay_key, settings.replayed)
-    replay = jax.vmap(lambda k: _agent_transitions(environment, learner, settings, k))(keys)
+    replay = jax.vmap(lambda k: _agent_transitions(environment, learner, deviation, settings, k))(keys)
     return TrainingState(
         learner=learner,
         reward=reward,
@@ -108,10 +120,10 @@ def iterate(
 ) -> tuple[TrainingState, Progress]:
     """One iteration n of Algorithm 1 (its lines 3 to 10)."""
     key, collect_key, reward_key, trajectory_key, update_key = jax.random.split(state.key, 5)
-    policy, deviation = state.learner.networks.policy, jnp.asarray(settings.deviation)
+    policy, deviation = state.learner.networks.policy, deviation_at(state.iteration, settings)
 
     # Learn the reward function of the home (lines 3 to 8).
-    fresh = _agent_transitions(environment, state.learner, settings, collect_key)
+    fresh = _agent_transitions(environment, state.learner, deviation, settings, collect_key)
     replay = jax.tree.map(
         lambda old, new: old.at[state.iteration % settings.replayed].set(new), state.replay, fresh
     )
@@ -138,10 +150,9 @@ def iterate(
 
 
 def _agent_transitions(
-    environment: Environment, learner: ppo.Learner, settings: AIRLSettings, key: Array
+    environment: Environment, learner: ppo.Learner, deviation: Array, settings: AIRLSettings, key: Array
 ) -> Transitions:
     shape = (settings.ppo.slots, settings.agent_rollouts)
-    deviation = jnp.asarray(settings.deviation)
     rollout = collect(environment, learner.networks.policy, deviation, shape, key)
     return jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), rollout.transitions)
 
@@ -153,7 +164,7 @@ def _optimiser(settings: AIRLSettings) -> optax.GradientTransformation:
 def _learn_reward(
     state: TrainingState, expert: Expert, replay: Transitions, settings: AIRLSettings, key: Array
 ):
-    deviation = jnp.asarray(settings.deviation)
+    deviation = deviation_at(state.iteration, settings)
     policy = state.learner.networks.policy
     agent = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), replay)
 

@@ -12,27 +12,37 @@ from hemma.types import Action, Array, Observation
 
 FEATURES = 8
 ACTIONS = 2
+SLOPE_BEYOND = 0.05
+"""Slope of the mean where it lies beyond [-1, 1]: a flat one would have no gradient to come back by."""
 
 
 class GaussianPolicy(eqx.Module):
-    """A Gaussian over action fractions whose mean is a small network plus a linear map of the features.
+    """A Gaussian over action fractions with a simple mean: HVAC affine in the features, battery by a network.
 
-    The linear map is there because holding a temperature is nearly linear in the indoor and outdoor ones.
-    Fractions are not squashed: the home takes those beyond [-1, 1] as the bound, and the density stays that
-    of the unbounded sample, so log pi is finite everywhere (see ``hemma.rl.actions``).
+    Holding a temperature is an affine law of T_in and T_out that ends at off and at full power, and it must
+    go on beyond the hottest training day; a network would bend it there. So both means are bent at -1 and 1
+    only, and keep a little slope beyond for the gradient. The fractions that are sampled are not bounded: the
+    home takes those beyond [-1, 1] as the bound, and the density stays that of the sample, so log pi is
+    finite everywhere (see ``hemma.rl.actions``).
     """
 
     network: Network
+    """Features to the battery's fraction."""
     linear: Float[Array, "actions features"]
+    bias: Float[Array, "actions"]
 
     def __init__(self, sizes: tuple[int, ...], key: Array):
         """Random weights, hidden layers of these sizes; the mean starts near 0, battery at rest."""
-        self.network = Network((FEATURES, *sizes, ACTIONS), key, last_scale=0.01)
+        self.network = Network((FEATURES, *sizes, 1), key, last_scale=0.01)
         self.linear = jnp.zeros((ACTIONS, FEATURES))
+        self.bias = jnp.zeros(ACTIONS)
 
     def mean(self, features: Float[Array, "features"]) -> Float[Array, "actions"]:
-        """Mean fractions at one state."""
-        return self.network(features) + self.linear @ features
+        """Mean fractions at one state: y = W x + b + (network(x), 0), bent at -1 and 1."""
+        affine = self.linear @ features + self.bias
+        raw = jnp.concatenate([affine[:1] + self.network(features), affine[1:]])
+        bounded = jnp.clip(raw, -1.0, 1.0)
+        return bounded + SLOPE_BEYOND * (raw - bounded)
 
 
 def log_density(
