@@ -15,7 +15,7 @@ from hemma.data import load_austin2021
 from hemma.expert.demonstrations import demonstrate
 from hemma.home import benchmark_home
 from hemma.irl import training
-from hemma.irl.airl import AIRLSettings
+from hemma.irl.airl import CHUNK, AIRLSettings
 from hemma.irl.task import Demonstrated, Task, make_task, stack
 
 RUNS = (1, 2, 4, 5, 8)
@@ -41,7 +41,7 @@ def seconds(run: training.Training, task: Task, settings: AIRLSettings) -> float
 
 def main() -> None:
     """Print the table."""
-    settings = dataclasses.replace(AIRLSettings(), iterations=training.CHUNK)
+    settings = dataclasses.replace(AIRLSettings(), iterations=CHUNK)
     stacked = {runs: stack(tasks()[:runs]) for runs in RUNS}
     begun = {runs: training.begin(task, settings) for runs, task in stacked.items()}
     for runs in RUNS:
@@ -49,7 +49,7 @@ def main() -> None:
     rounds = [{runs: seconds(begun[runs], stacked[runs], settings) for runs in RUNS} for _ in range(ROUNDS)]
     print("runs  ms an iteration and run  of one alone")
     for runs in RUNS:
-        each = [1e3 * r[runs] / runs / training.CHUNK for r in rounds]
+        each = [1e3 * r[runs] / runs / CHUNK for r in rounds]
         share = statistics.median(r[runs] / runs / r[1] for r in rounds)
         print(f"{runs:4d}  {statistics.median(each):23.1f}  {share:12.2f}")
 

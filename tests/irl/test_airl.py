@@ -174,11 +174,29 @@ def test_seeds_give_different_policies():
     assert not np.allclose(weights[0], weights[1])
 
 
-def test_foreign_days_and_odd_iterations_are_refused_with_the_cure():
+def test_foreign_days_are_refused_with_the_cure():
     with pytest.raises(HemmaError, match="expected 47 transitions for traces of 48 slots, got 71"):
         make_task(Home(), traces(2), demonstrate(Home(), traces(3), price_rule), 0)
-    with pytest.raises(HemmaError, match="multiple of 25, got 30; try 25"):
-        training.begin(stack([task()]), dataclasses.replace(SMALL, iterations=30))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"iterations": 30}, "iterations a multiple of 25, got 30"),
+        ({"iterations": -25}, "iterations a multiple of 25, got -25"),
+        ({"first_deviation": (0.2, 0.0)}, "first_deviation two numbers > 0"),
+        ({"averaging": 1.0}, "0 <= averaging < 1, got 1.0"),
+        ({"penalty": -1.0}, "penalty >= 0, got -1.0"),
+    ],
+)
+def test_settings_without_meaning_are_refused(change, message):
+    with pytest.raises(HemmaError, match=message):
+        dataclasses.replace(SMALL, **change)
+
+
+def test_minibatches_that_do_not_divide_the_samples_are_refused():
+    with pytest.raises(HemmaError, match="multiple of minibatches, got 5"):
+        PPOSettings(rollouts=8, slots=12, minibatches=5)
 
 
 def test_a_diverged_run_is_named():

@@ -9,7 +9,8 @@ import numpy as np
 
 from hemma.checkpoint import write_atomically
 from hemma.home import Home
-from hemma.irl.training import CHUNK, Curve
+from hemma.irl.airl import CHUNK
+from hemma.irl.training import Curve
 
 COLUMNS = (
     "iteration",

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import optax
 from jaxtyping import Float, Int
 
+from hemma.home.checks import require
 from hemma.irl.discriminator import cross_entropy, gradient_penalty, logits
 from hemma.irl.reward import ShapedReward
 from hemma.rl import ppo
@@ -17,13 +18,16 @@ from hemma.rl.policy import GaussianPolicy, log_density
 from hemma.rl.ppo import PPOSettings
 from hemma.types import Array
 
+CHUNK = 25
+"""Iterations between two looks at a run: one row of its learning curve, one occasion to save it."""
+
 
 @dataclass(frozen=True)
 class AIRLSettings:
     """Sizes and rates of Algorithm 1; where a value comes from stands in ``docs/paper.md``."""
 
     iterations: int = 1000
-    """N."""
+    """N, a multiple of ``CHUNK``."""
     first_deviation: tuple[float, float] = (0.2, 0.15)
     """sigma at the first iteration: standard deviation of the policy's fractions (battery, HVAC) and of the
     expert's jitter."""
@@ -46,6 +50,24 @@ class AIRLSettings:
     averaging: float = 0.99
     """Share of the old average kept an iteration in the averaged policy, which is the result."""
     ppo: PPOSettings = field(default_factory=PPOSettings)
+
+    def __post_init__(self):
+        """Refuse settings without meaning."""
+        whole = self.iterations >= CHUNK and self.iterations % CHUNK == 0
+        require("airl", whole, f"iterations a multiple of {CHUNK}", self.iterations)
+        for name in ("agent_rollouts", "replayed", "steps", "batch"):
+            require("airl", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
+        for name in ("first_deviation", "last_deviation"):
+            value = getattr(self, name)
+            require("airl", len(value) == 2 and min(value) > 0, f"{name} two numbers > 0", value)
+        for name in ("learning_rate", "log_density_bound"):
+            require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
+        require("airl", self.penalty >= 0, "penalty >= 0", self.penalty)
+        require("airl", 0 < self.shrinking <= 1, "0 < shrinking <= 1", self.shrinking)
+        require("airl", 0 <= self.averaging < 1, "0 <= averaging < 1", self.averaging)
+        require(
+            "airl", all(width >= 1 for width in self.hidden), "hidden layers of at least 1 unit", self.hidden
+        )
 
 
 class Expert(eqx.Module):

@@ -14,14 +14,11 @@ from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.home import HomeState, Step, observe
 from hemma.irl import airl
-from hemma.irl.airl import AIRLSettings, Progress, TrainingState
+from hemma.irl.airl import CHUNK, AIRLSettings, Progress, TrainingState
 from hemma.irl.task import Task
 from hemma.rl.environment import Environment
 from hemma.rl.policy import GaussianPolicy, PolicyController
 from hemma.types import Array
-
-CHUNK = 25
-"""Iterations between two looks at a run: one row of its learning curve, one occasion to save it."""
 
 
 class Curve(eqx.Module):
@@ -49,11 +46,6 @@ class Training(eqx.Module):
 
 def begin(task: Task, settings: AIRLSettings) -> Training:
     """All runs of a stacked task at iteration 0."""
-    if settings.iterations < CHUNK or settings.iterations % CHUNK:
-        raise HemmaError(
-            f"airl.iterations: expected a multiple of {CHUNK}, got {settings.iterations}; "
-            f"try {max(CHUNK, round(settings.iterations / CHUNK) * CHUNK)}"
-        )
     state = _start(task, settings)
     shape = jax.eval_shape(partial(_chunk, settings=settings), state, task)[1]
     return Training(state, jax.tree.map(lambda x: jnp.zeros((x.shape[0], 0), x.dtype), shape))

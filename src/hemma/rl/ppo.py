@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import optax
 from jaxtyping import Float
 
+from hemma.home.checks import require
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Rollout
 from hemma.rl.network import Network
@@ -33,6 +34,20 @@ class PPOSettings:
     value_learning_rate: float = 2e-3
     max_gradient_norm: float = 0.5
     hidden: tuple[int, ...] = (64, 64)
+
+    def __post_init__(self):
+        """Refuse settings without meaning."""
+        for name in ("rollouts", "slots", "epochs", "minibatches"):
+            require("ppo", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
+        for name in ("clip", "learning_rate", "value_learning_rate", "max_gradient_norm"):
+            require("ppo", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
+        require("ppo", 0 < self.discount < 1, "0 < discount < 1", self.discount)
+        require("ppo", 0 <= self.trace <= 1, "0 <= trace <= 1", self.trace)
+        require(
+            "ppo", all(width >= 1 for width in self.hidden), "hidden layers of at least 1 unit", self.hidden
+        )
+        whole = self.rollouts * self.slots % self.minibatches == 0
+        require("ppo", whole, "rollouts * slots a multiple of minibatches", self.minibatches)
 
 
 class ActorCritic(eqx.Module):
