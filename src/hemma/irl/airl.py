@@ -27,13 +27,14 @@ class AIRLSettings:
     """Sizes and rates of Algorithm 1; where a value comes from stands in ``docs/paper.md``."""
 
     iterations: int = 1000
-    """N, a multiple of ``CHUNK``."""
+    """N, a multiple of 25."""
     first_deviation: tuple[float, float] = (0.2, 0.15)
     """sigma at the first iteration: standard deviation of the policy's fractions (battery, HVAC) and of the
     expert's jitter."""
     last_deviation: tuple[float, float] = (0.2, 0.05)
     """sigma once it has shrunk, geometrically, over the first ``shrinking`` of the iterations."""
     shrinking: float = 0.8
+    """Share of the iterations over which sigma shrinks."""
     agent_rollouts: int = 16
     """Rollouts collected for the discriminator in an iteration."""
     replayed: int = 8
@@ -43,13 +44,17 @@ class AIRLSettings:
     batch: int = 512
     """Expert and as many agent transitions an update, I / 2."""
     learning_rate: float = 1e-3
+    """Of the discriminator's Adam."""
     penalty: float = 1.0
     """Weight of the gradient penalty."""
     log_density_bound: float = 10.0
+    """log pi enters the logit within plus and minus this."""
     hidden: tuple[int, ...] = (64,)
+    """Units of the hidden layers of g, and of h."""
     averaging: float = 0.99
     """Share of the old average kept an iteration in the averaged policy, which is the result."""
     ppo: PPOSettings = field(default_factory=PPOSettings)
+    """Of the policy's update."""
 
     def __post_init__(self):
         """Refuse settings without meaning."""
@@ -185,7 +190,8 @@ def _optimiser(settings: AIRLSettings) -> optax.GradientTransformation:
 
 def _learn_reward(
     state: TrainingState, expert: Expert, replay: Transitions, settings: AIRLSettings, key: Array
-):
+) -> tuple[ShapedReward, optax.OptState, tuple[Array, Array, Array]]:
+    """r_{n+1}, its optimiser, and (loss, expert accuracy, agent accuracy) as means over the steps."""
     deviation = deviation_at(state.iteration, settings)
     policy = state.learner.networks.policy
     agent = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), replay)

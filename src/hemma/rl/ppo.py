@@ -22,18 +22,27 @@ class PPOSettings:
     """Sizes and rates of PPO; where a value comes from stands in ``docs/paper.md``."""
 
     rollouts: int = 64
+    """Rollouts collected for an update."""
     slots: int = 48
+    """Length of a rollout."""
     discount: float = 0.95
     """gamma."""
     trace: float = 0.95
     """lambda of the generalised advantage estimate."""
     clip: float = 0.2
+    """Largest change of the probability ratio that still pays."""
     epochs: int = 3
+    """Passes over the samples in an update."""
     minibatches: int = 4
+    """Parts of a pass; they must divide rollouts * slots."""
     learning_rate: float = 1e-3
+    """Of the policy's Adam."""
     value_learning_rate: float = 2e-3
+    """Of the value function's Adam."""
     max_gradient_norm: float = 0.5
+    """Longer gradients are shortened to this, each network by itself."""
     hidden: tuple[int, ...] = (64, 64)
+    """Units of the hidden layers of the battery's mean, and of the value function."""
 
     def __post_init__(self):
         """Refuse settings without meaning."""
