@@ -24,11 +24,11 @@ def input_scaling(record: ThermalRecord) -> InputScaling:
 
 
 def least_squares_response(record: ThermalRecord) -> ThermalResponse:
-    """Minimise sum (T' - T - a u_heat + d u_cool + b (T - T_out) - c)^2 with a, b, d inside physical ranges.
+    """Minimise sum (T' - T - a u_heat + d u_cool + b (T - T_out))^2 with a, b, d inside physical ranges.
 
-    c = c_0 + c_1 sin + c_2 cos + c_3 sun stands for the gains, so that sun and people do not pass for a
-    leak; it is thrown away, for f learns it. A direction that the record never used (no heating in summer)
-    takes the response of the other one, and a record without HVAC that of the benchmark home.
+    One step ahead and with f = 0; the gains of sun and people bias it, and training starts from there. A
+    direction that the record never used (no heating in summer) takes the response of the other one, and a
+    record without HVAC that of the benchmark home.
     """
     heated, cooled = (np.any(np.asarray(u) > 0) for u in _powers(record))
     solution = _bounded_least_squares(record)
@@ -44,7 +44,7 @@ def _powers(record: ThermalRecord) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _bounded_least_squares(record: ThermalRecord) -> np.ndarray:
-    """Parameters a, d, b, c_0 .. c_3."""
+    """Parameters a, d, b."""
     drivers, T = record.drivers, np.asarray(record.indoor_temperature, float)
     u_heat, u_cool = _powers(record)
     columns = [u_heat, -u_cool, np.asarray(drivers.outdoor_temperature, float) - T[:-1]]
