@@ -5,7 +5,6 @@
 One table; compilation is left out. All are measured in turn within one process, machines being noisy.
 """
 
-import dataclasses
 import statistics
 import time
 
@@ -14,9 +13,9 @@ import jax
 from hemma.data import load_austin2021
 from hemma.expert.demonstrations import demonstrate
 from hemma.home import benchmark_home
-from hemma.irl import training
-from hemma.irl.airl import CHUNK, AIRLSettings
-from hemma.irl.task import Demonstrated, Task, make_task, stack
+from hemma.irl.airl import AdversarialImitation
+from hemma.rl import training
+from hemma.rl.task import Demonstrated, Task, make_task, stack
 
 RUNS = (1, 2, 4, 5, 8)
 ROUNDS = 4
@@ -32,24 +31,24 @@ def tasks() -> list[Task]:
     return [make_task(home, days, demonstrated, seed) for seed in range(max(RUNS))]
 
 
-def seconds(run: training.Training, task: Task, settings: AIRLSettings) -> float:
+def seconds(run: training.Training, task: Task, learner: AdversarialImitation) -> float:
     """Wall-clock time of one chunk of iterations."""
     start = time.perf_counter()
-    jax.block_until_ready(training.advance(run, task, settings))
+    jax.block_until_ready(training.advance(run, task, learner))
     return time.perf_counter() - start
 
 
 def main() -> None:
     """Print the table."""
-    settings = dataclasses.replace(AIRLSettings(), iterations=CHUNK)
+    learner = AdversarialImitation()
     stacked = {runs: stack(tasks()[:runs]) for runs in RUNS}
-    begun = {runs: training.begin(task, settings) for runs, task in stacked.items()}
+    begun = {runs: training.begin(task, learner) for runs, task in stacked.items()}
     for runs in RUNS:
-        seconds(begun[runs], stacked[runs], settings)
-    rounds = [{runs: seconds(begun[runs], stacked[runs], settings) for runs in RUNS} for _ in range(ROUNDS)]
+        seconds(begun[runs], stacked[runs], learner)
+    rounds = [{runs: seconds(begun[runs], stacked[runs], learner) for runs in RUNS} for _ in range(ROUNDS)]
     print("runs  ms an iteration and run  of one alone")
     for runs in RUNS:
-        each = [1e3 * r[runs] / runs / CHUNK for r in rounds]
+        each = [1e3 * r[runs] / runs / training.CHUNK for r in rounds]
         share = statistics.median(r[runs] / runs / r[1] for r in rounds)
         print(f"{runs:4d}  {statistics.median(each):23.1f}  {share:12.2f}")
 

@@ -11,13 +11,14 @@ import pytest
 
 from hemma.errors import HemmaError
 from hemma.home import Home, observe, paper_state
-from hemma.irl import training
-from hemma.irl.airl import AIRLSettings, deviation_at
-from hemma.irl.discriminator import cross_entropy, gradient_penalty, logits
-from hemma.irl.reward import ShapedReward
-from hemma.irl.task import Demonstrated, make_task, stack
+from hemma.irl.airl import AdversarialImitation, AIRLSettings, Contest
+from hemma.irl.discriminator import cross_entropy, gradient_penalty
+from hemma.irl.reward import ImitationScore, ShapedReward
+from hemma.rl import training
 from hemma.rl.environment import Transitions
+from hemma.rl.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
+from hemma.rl.task import Demonstrated, Expert, make_task, stack
 from hemma.types import Action, Exogenous
 
 SMALL = AIRLSettings(
@@ -27,6 +28,7 @@ SMALL = AIRLSettings(
     hidden=(16,),
     ppo=PPOSettings(rollouts=8, slots=12, hidden=(16,)),
 )
+LEARNER = AdversarialImitation(SMALL)
 
 
 def traces(days, seed=0):
@@ -75,7 +77,7 @@ def transitions(samples, seed=0):
 
 
 def test_reward_is_g_plus_discounted_shaping_difference():
-    reward = ShapedReward((16,), 0.9, jax.random.key(0))
+    reward = ShapedReward.random((16,), 0.9, jax.random.key(0))
     batch = transitions(5)
     for i in range(5):
         s, a, after = (np.asarray(x[i]) for x in (batch.features, batch.fractions, batch.next_features))
@@ -91,7 +93,7 @@ def test_reward_is_g_plus_discounted_shaping_difference():
 
 def test_shaping_telescopes_along_a_trajectory():
     """sum gamma^t r_t = sum gamma^t g_t + gamma^T h(s_T) - h(s_0): shaping cannot change what is best."""
-    reward = ShapedReward((16,), 0.9, jax.random.key(1))
+    reward = ShapedReward.random((16,), 0.9, jax.random.key(1))
     batch = transitions(9)
     chained = eqx.tree_at(lambda t: t.next_features, batch, jnp.roll(batch.features, -1, axis=0))
     path = jax.tree.map(lambda x: x[:8], chained)
@@ -103,27 +105,36 @@ def test_shaping_telescopes_along_a_trajectory():
 
 
 def test_logit_is_that_of_equation_10_and_loss_that_of_equation_12():
-    reward = ShapedReward((16,), 0.9, jax.random.key(2))
+    reward = ShapedReward.random((16,), 0.9, jax.random.key(2))
     expert, agent = transitions(6, 1), transitions(6, 2)
     log_pi = jnp.linspace(-3.0, 2.0, 6)
     scores = []
     for batch in (expert, agent):
         r, pi = np.exp(np.asarray(reward.batch(batch))), np.exp(np.asarray(log_pi))
         scores.append(r / (r + pi))
-        np.testing.assert_allclose(jax.nn.sigmoid(logits(reward, batch, log_pi, 10.0)), scores[-1], rtol=1e-5)
+        np.testing.assert_allclose(jax.nn.sigmoid(reward.logits(batch, log_pi)), scores[-1], rtol=1e-5)
     expected = 0.5 * (-np.log(scores[0]).mean() - np.log(1 - scores[1]).mean())
-    loss = cross_entropy(logits(reward, expert, log_pi, 10.0), logits(reward, agent, log_pi, 10.0))
+    loss = cross_entropy(reward.logits(expert, log_pi), reward.logits(agent, log_pi))
     np.testing.assert_allclose(loss, expected, rtol=1e-5)
 
 
-def test_an_impossible_action_has_a_finite_logit():
-    reward = ShapedReward((16,), 0.9, jax.random.key(2))
-    batch = transitions(3)
-    assert np.isfinite(np.asarray(logits(reward, batch, jnp.full(3, -jnp.inf), 10.0))).all()
+def test_the_density_of_an_impossible_action_is_bounded():
+    policy = GaussianPolicy((16,), jax.random.key(2))
+    far = eqx.tree_at(lambda t: t.fractions, transitions(3), jnp.full((3, 2), 1e30))
+    contest = Contest(Expert(far, jnp.asarray(3)), far, policy, jnp.asarray([0.2, 0.1]))
+    np.testing.assert_array_equal(contest.density(far, 10.0), [-10.0] * 3)
+
+
+def test_gail_pays_the_probability_of_not_being_taken_for_the_agent_and_knows_no_density():
+    head = ImitationScore.random((16,), 0.9, jax.random.key(2))
+    batch = transitions(5)
+    probability = 1 / (1 + np.exp(-np.asarray(head.logits(batch, jnp.zeros(5)), float)))
+    np.testing.assert_allclose(head.rewards(batch), -np.log(1 - probability), rtol=1e-5)
+    np.testing.assert_array_equal(head.logits(batch, jnp.ones(5)), head.logits(batch, jnp.zeros(5)))
 
 
 def test_gradient_penalty_is_zero_for_a_flat_reward_and_grows_with_slope():
-    reward = ShapedReward((16,), 0.9, jax.random.key(3))
+    reward = ShapedReward.random((16,), 0.9, jax.random.key(3))
     batches = transitions(32, 1), transitions(32, 2)
     flat = jax.tree.map(lambda w: 0.01 * w, reward)
     steep = jax.tree.map(lambda w: 10.0 * w, reward)
@@ -131,37 +142,28 @@ def test_gradient_penalty_is_zero_for_a_flat_reward_and_grows_with_slope():
     assert float(gradient_penalty(steep, *batches, jax.random.key(0))) > 10.0
 
 
-def test_deviation_shrinks_geometrically_and_then_stays():
-    settings = AIRLSettings(
-        iterations=100, first_deviation=(0.4, 0.2), last_deviation=(0.1, 0.2), shrinking=0.5
-    )
-    np.testing.assert_allclose(deviation_at(jnp.asarray(0), settings), [0.4, 0.2], rtol=1e-6)
-    np.testing.assert_allclose(deviation_at(jnp.asarray(25), settings), [0.2, 0.2], rtol=1e-6)
-    np.testing.assert_allclose(deviation_at(jnp.asarray(90), settings), [0.1, 0.2], rtol=1e-6)
-
-
 def test_padding_is_never_read():
     """A run of 3 days beside one of 5 days trains the same whatever lies behind its third day."""
     runs = stack([task(seed=0, days=3), task(seed=1, days=5)])
     poisoned = eqx.tree_at(
-        lambda t: (t.environment.exogenous, t.expert.transitions),
+        lambda t: (t.environment.exogenous, t.teacher.transitions),
         runs,
         (
             jax.tree.map(lambda x: x.at[0, 72:].set(math.nan), runs.environment.exogenous),
-            jax.tree.map(lambda x: x.at[0, 71:].set(math.nan), runs.expert.transitions),
+            jax.tree.map(lambda x: x.at[0, 71:].set(math.nan), runs.teacher.transitions),
         ),
     )
-    clean, other = (training.advance(training.begin(r, SMALL), r, SMALL) for r in (runs, poisoned))
+    clean, other = (training.advance(training.begin(r, LEARNER), r, LEARNER) for r in (runs, poisoned))
     for a, b in zip(jax.tree.leaves(clean.state.average), jax.tree.leaves(other.state.average), strict=True):
         np.testing.assert_array_equal(a, b)
 
 
 def test_training_goes_on_from_a_file_to_the_same_result(tmp_path):
     runs = stack([task(seed=0), task(seed=1)])
-    unbroken = training.train(runs, SMALL)
-    half = training.advance(training.begin(runs, SMALL), runs, SMALL)
+    unbroken = training.train(runs, LEARNER)
+    half = training.advance(training.begin(runs, LEARNER), runs, LEARNER)
     training.save(tmp_path / "half.safetensors", half, {})
-    resumed = training.train(runs, SMALL, training.load(tmp_path / "half.safetensors", runs, SMALL))
+    resumed = training.train(runs, LEARNER, training.load(tmp_path / "half.safetensors", runs, LEARNER))
     for a, b in zip(jax.tree.leaves(unbroken), jax.tree.leaves(resumed), strict=True):
         if jnp.issubdtype(a.dtype, jax.dtypes.prng_key):
             a, b = jax.random.key_data(a), jax.random.key_data(b)
@@ -170,7 +172,7 @@ def test_training_goes_on_from_a_file_to_the_same_result(tmp_path):
 
 def test_seeds_give_different_policies():
     runs = stack([task(seed=0), task(seed=1)])
-    weights = training.begin(runs, SMALL).state.average.network.weights[0]
+    weights = training.begin(runs, LEARNER).state.average.network.weights[0]
     assert not np.allclose(weights[0], weights[1])
 
 
@@ -184,8 +186,6 @@ def test_foreign_days_are_refused_with_the_cure():
     [
         ({"iterations": 30}, "iterations a multiple of 25, got 30"),
         ({"iterations": -25}, "iterations a multiple of 25, got -25"),
-        ({"first_deviation": (0.2, 0.0)}, "first_deviation two numbers > 0"),
-        ({"averaging": 1.0}, "0 <= averaging < 1, got 1.0"),
         ({"penalty": -1.0}, "penalty >= 0, got -1.0"),
     ],
 )
@@ -202,19 +202,21 @@ def test_minibatches_that_do_not_divide_the_samples_are_refused():
 def test_a_diverged_run_is_named():
     runs = stack([task(seed=3), task(seed=8)])
     poisoned = eqx.tree_at(
-        lambda t: t.expert.transitions.features, runs, runs.expert.transitions.features.at[1].set(math.nan)
+        lambda t: t.teacher.transitions.features, runs, runs.teacher.transitions.features.at[1].set(math.nan)
     )
     with pytest.raises(HemmaError, match=r"seeds \[8\]"):
-        training.train(poisoned, SMALL)
+        training.train(poisoned, LEARNER)
 
 
 @pytest.mark.slow
-def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw():
+@pytest.mark.parametrize("head", [ShapedReward, ImitationScore])
+def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw(head):
     """A rule on price and weather, on days the learner never saw: same battery and HVAC power."""
     settings = AIRLSettings(iterations=250, ppo=PPOSettings(rollouts=32, slots=24))
+    learner = AdversarialImitation(settings, head)
     runs = stack([task()])
-    trained = training.train(runs, settings)
-    controller = jax.tree.map(lambda x: x[0], training.controllers(trained, runs))
+    trained = training.train(runs, learner)
+    controller = jax.tree.map(lambda x: x[0], training.controllers(trained, runs, learner))
     unseen = demonstrate(Home(), traces(4, seed=9), price_rule)
     acted = demonstrate(Home(), traces(4, seed=9), lambda o: controller(o, jax.random.key(0)))
     same = jnp.abs(acted.actions[:, 0] - unseen.actions[:, 0]) < 0.75

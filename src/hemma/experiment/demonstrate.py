@@ -20,7 +20,7 @@ from hemma.expert.demonstrations import (
 )
 from hemma.expert.hierarchy import run_hierarchy
 from hemma.home import Home
-from hemma.irl.task import Demonstrated
+from hemma.rl.task import Demonstrated
 from hemma.types import Action, Exogenous
 
 STAGE = "demonstrate"

@@ -46,6 +46,8 @@ def plain(value: Any) -> Any:
     """``value`` in a form that JSON writes the same way each time; arrays become digests of their content."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
+    if isinstance(value, type):
+        return value.__qualname__
     if isinstance(value, date):
         return value.isoformat()
     if isinstance(value, tuple | list):

@@ -14,21 +14,21 @@ from hemma.data import Traces
 from hemma.errors import HemmaError
 from hemma.evaluation import evaluate_stacked
 from hemma.experiment.case import Case, empty_results, make_case
-from hemma.experiment.demonstrate import Expert, demonstration
+from hemma.experiment.demonstrate import Expert
 from hemma.experiment.identify import identify
 from hemma.experiment.judge import Judge, Played
 from hemma.experiment.keys import outside
 from hemma.experiment.ledger import Ledger, open_ledger
+from hemma.experiment.lessons import ANY_LENGTH, Imitation, imitations, lessons
 from hemma.experiment.progress import Progress, Silence
 from hemma.experiment.references import plain_optimum, references
-from hemma.experiment.results import Head, HomeResults, MethodResults
+from hemma.experiment.results import Head, HomeResults, MethodResults, Run
 from hemma.experiment.settings import Experiment
 from hemma.experiment.store import Store
-from hemma.experiment.train import Lesson, Trained, tasks, train_lesson
+from hemma.experiment.train import Lesson, Trained, train_lesson
 
-METHOD = "HA-1"
-ANY_LENGTH = "AIRL"
-"""The method of HA-1 with demonstrations of another length."""
+LENGTHS = ("HA-1", "HA-2", ANY_LENGTH)
+"""One method at several lengths of the demonstrations."""
 
 
 class Stage(IntEnum):
@@ -90,55 +90,51 @@ class _HomeRun:
         if last is Stage.IDENTIFY:
             return
         expert = Expert(self.case, identification)
-        lessons = self._lessons(expert)
+        wanted = imitations(self.case.experiment, self.case.training_days)
+        learned = list(zip(wanted, lessons(self.case, expert, self.store, wanted), strict=True))
         if last is Stage.DEMONSTRATE:
             return
         if last is Stage.TRAIN:
-            train_lesson(lessons[0], tasks(lessons, self.case)[0], self.case, self.store)
+            for _, lesson in learned:
+                train_lesson(lesson, self.store)
             return
-        self._measure(results, expert, lessons)
+        self._measure(results, expert, learned)
 
-    def _lessons(self, expert: Expert) -> list[Lesson]:
-        """What there is to learn: HA-1 first, then the method with demonstrations of other lengths."""
-        experiment, efficiency = self.case.experiment, self.case.experiment.data_efficiency
-        main = demonstration(self.store, expert, experiment.demonstration_days)
-        others = [
-            demonstration(self.store, expert, days)
-            for days in efficiency.days
-            if days != main.days and days <= self.case.training_days
-        ]
-        shorter = [Lesson(f"{ANY_LENGTH}-{other.days}-days", other, efficiency.seeds) for other in others]
-        return [Lesson(METHOD, main, experiment.seeds), *shorter]
-
-    def _measure(self, results: HomeResults, expert: Expert, lessons: Sequence[Lesson]) -> None:
+    def _measure(
+        self, results: HomeResults, expert: Expert, learned: Sequence[tuple[Imitation, Lesson]]
+    ) -> None:
         """Baselines first, since they are quick; then each lesson, measured as soon as it is trained."""
         judge = Judge(self.case, self.store)
         judge.write_exogenous()
         methods = references(self.case, judge, expert)
         optimum = plain_optimum(self.case, judge)
         results = self._put(replace(results, methods=methods, optimum=optimum))
-        for lesson, task in zip(lessons, tasks(lessons, self.case), strict=True):
-            trained = train_lesson(lesson, task, self.case, self.store)
+        for one, lesson in learned:
+            trained = train_lesson(lesson, self.store)
             runs = judge.judged(lesson.label, trained.mark, partial(self._play, lesson, trained))
-            days = lesson.demonstration.days
-            if lesson.label == METHOD:
-                methods = (MethodResults(METHOD, runs, days), *results.methods)
-                results = replace(results, methods=methods)
-            lengths = (*results.data_efficiency, MethodResults(ANY_LENGTH, runs, days))
-            ordered = tuple(sorted(lengths, key=lambda length: length.days or 0))
-            results = self._put(replace(results, data_efficiency=ordered))
+            results = self._put(_with(results, one, runs))
 
     def _play(self, lesson: Lesson, trained: Trained) -> list[Played]:
-        keys = jax.random.split(jax.random.key(0), lesson.seeds)
+        keys = jax.random.split(jax.random.key(0), lesson.runs)
         outcomes = evaluate_stacked(self.case.home, self.case.test, trained.controllers, keys)
         return [
-            Played(outcome, seed, trained.seconds, curve)
-            for seed, (outcome, curve) in enumerate(zip(outcomes, trained.curves, strict=True))
+            Played(outcome, int(seed), trained.seconds, curve)
+            for outcome, seed, curve in zip(outcomes, lesson.task.seed, trained.curves, strict=True)
         ]
 
     def _put(self, results: HomeResults) -> HomeResults:
         self.ledger.put(results)
         return results
+
+
+def _with(results: HomeResults, one: Imitation, runs: tuple[Run, ...]) -> HomeResults:
+    """The results with those of one more method; HA-1 and HA-2 are points of the data efficiency as well."""
+    if one.method != ANY_LENGTH:
+        results = replace(results, methods=(*results.methods, MethodResults(one.method, runs, one.days)))
+    if one.method not in LENGTHS:
+        return results
+    lengths = (*results.data_efficiency, MethodResults(ANY_LENGTH, runs, one.days))
+    return replace(results, data_efficiency=tuple(sorted(lengths, key=lambda length: length.days or 0)))
 
 
 def _require_different_names(homes: Sequence[Traces]) -> None:

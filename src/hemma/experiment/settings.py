@@ -10,12 +10,14 @@ from hemma.identification.excitation import Excitation
 from hemma.identification.settings import IdentificationSettings
 from hemma.irl.airl import AIRLSettings
 
+LEARNED = ("HA-1", "HA-2", "GAIL")
+
 
 @dataclass(frozen=True)
 class DataEfficiency:
     """How the method fares with more and fewer days of demonstrations (Figs. 3a and 3b of the paper)."""
 
-    days: tuple[int, ...] = (3, 7, 15, 30, 60)
+    days: tuple[int, ...] = (1, 3, 7, 15, 30, 60)
     """Lengths, each from the first training day on; those longer than the training period are left out."""
     seeds: int = 3
     """Runs of each length."""
@@ -50,16 +52,23 @@ class Experiment:
     identification: IdentificationSettings = field(default_factory=IdentificationSettings)
     expert: HierarchySettings = field(default_factory=HierarchySettings)
     airl: AIRLSettings = field(default_factory=AIRLSettings)
+    learned: tuple[str, ...] = LEARNED
+    """Learned methods to run, of HA-1, HA-2, GAIL."""
     seeds: int = 5
-    """Runs of HA-1, with the seeds 0, 1, ..."""
+    """Runs of each learned method, with the seeds 0, 1, ..."""
     demonstration_days: int = 15
-    """Days of demonstrations of HA-1, the first of the training period."""
+    """Days of demonstrations of HA-1, GAIL and BC, the first of the training period."""
+    long_demonstration_days: int = 60
+    """Days of demonstrations of HA-2 and MaxEnt IRL; the whole training period where it is shorter."""
     data_efficiency: DataEfficiency = field(default_factory=DataEfficiency)
 
     def __post_init__(self):
         """Refuse numbers of runs and days that cannot be."""
         require("seeds", self.seeds >= 1, "at least 1", self.seeds)
-        require("demonstration_days", self.demonstration_days >= 1, "at least 1", self.demonstration_days)
+        for name in ("demonstration_days", "long_demonstration_days"):
+            require(name, getattr(self, name) >= 1, "at least 1", getattr(self, name))
+        unknown = [method for method in self.learned if method not in LEARNED]
+        require("learned", not unknown, f"some of {', '.join(LEARNED)}", ", ".join(unknown))
         require("pv", self.pv_scale >= 0, "scale >= 0", self.pv_scale)
 
     def home(self, slot_length: float) -> Home:

@@ -1,4 +1,4 @@
-"""Algorithm 1 of the paper: adversarial inverse reinforcement learning from demonstrations."""
+"""Algorithm 1 of the paper: adversarial inverse reinforcement learning, or imitation, from demonstrations."""
 
 from dataclasses import dataclass, field
 
@@ -9,17 +9,17 @@ import optax
 from jaxtyping import Float, Int
 
 from hemma.home.checks import require
-from hemma.irl.discriminator import cross_entropy, gradient_penalty, logits
-from hemma.irl.reward import ShapedReward
+from hemma.irl.discriminator import cross_entropy, gradient_penalty
+from hemma.irl.reward import AbstractHead, ShapedReward
 from hemma.rl import ppo
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Environment, Transitions, collect
+from hemma.rl.exploration import Exploration, falling
 from hemma.rl.policy import GaussianPolicy, log_density
 from hemma.rl.ppo import PPOSettings
+from hemma.rl.task import Expert, Task
+from hemma.rl.training import CHUNK
 from hemma.types import Array
-
-CHUNK = 25
-"""Iterations between two looks at a run: one row of its learning curve, one occasion to save it."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +28,6 @@ class AIRLSettings:
 
     iterations: int = 1000
     """N, a multiple of 25."""
-    first_deviation: tuple[float, float] = (0.2, 0.15)
-    """sigma at the first iteration: standard deviation of the policy's fractions (battery, HVAC) and of the
-    expert's jitter."""
-    last_deviation: tuple[float, float] = (0.2, 0.05)
-    """sigma once it has shrunk, geometrically, over the first ``shrinking`` of the iterations."""
-    shrinking: float = 0.8
-    """Share of the iterations over which sigma shrinks."""
     agent_rollouts: int = 16
     """Rollouts collected for the discriminator in an iteration."""
     replayed: int = 8
@@ -51,8 +44,8 @@ class AIRLSettings:
     """log pi enters the logit within plus and minus this."""
     hidden: tuple[int, ...] = (64,)
     """Units of the hidden layers of g, and of h."""
-    averaging: float = 0.99
-    """Share of the old average kept an iteration in the averaged policy, which is the result."""
+    exploration: Exploration = field(default_factory=Exploration)
+    """Of the policy; the expert's jitter has the same sigma."""
     ppo: PPOSettings = field(default_factory=PPOSettings)
     """Of the policy's update."""
 
@@ -62,26 +55,12 @@ class AIRLSettings:
         require("airl", whole, f"iterations a multiple of {CHUNK}", self.iterations)
         for name in ("agent_rollouts", "replayed", "steps", "batch"):
             require("airl", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
-        for name in ("first_deviation", "last_deviation"):
-            value = getattr(self, name)
-            require("airl", len(value) == 2 and min(value) > 0, f"{name} two numbers > 0", value)
         for name in ("learning_rate", "log_density_bound"):
             require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
         require("airl", self.penalty >= 0, "penalty >= 0", self.penalty)
-        require("airl", 0 < self.shrinking <= 1, "0 < shrinking <= 1", self.shrinking)
-        require("airl", 0 <= self.averaging < 1, "0 <= averaging < 1", self.averaging)
         require(
             "airl", all(width >= 1 for width in self.hidden), "hidden layers of at least 1 unit", self.hidden
         )
-
-
-class Expert(eqx.Module):
-    """The demonstrations, as the discriminator samples them."""
-
-    transitions: Transitions
-    """Shape (L + padding, ...)."""
-    available: Int[Array, ""]
-    """L; what lies behind is padding and never read."""
 
 
 class TrainingState(eqx.Module):
@@ -89,9 +68,9 @@ class TrainingState(eqx.Module):
 
     learner: ppo.Learner
     """pi_n with its value function and optimiser."""
-    reward: ShapedReward
-    """r_n."""
-    reward_optimiser: optax.OptState
+    head: AbstractHead
+    """AIRL: r_n."""
+    head_optimiser: optax.OptState
     replay: Transitions
     """Agent transitions of the last iterations, (replayed, samples, ...)."""
     average: GaussianPolicy
@@ -116,112 +95,136 @@ class Progress(eqx.Module):
     """Mean X3 of the exploring agent [degC]; shown, never used."""
 
 
-def deviation_at(iteration: Array, settings: AIRLSettings) -> Float[Array, "actions"]:
-    """sigma at an iteration: coarse strokes first, fine ones later."""
-    first, last = jnp.asarray(settings.first_deviation), jnp.asarray(settings.last_deviation)
-    share = jnp.minimum(iteration / (settings.shrinking * settings.iterations), 1.0)
-    return first * (last / first) ** share
+@dataclass(frozen=True)
+class AdversarialImitation:
+    """Algorithm 1 with the head of AIRL (the paper), or with that of GAIL: one loop, two arguments."""
+
+    settings: AIRLSettings = field(default_factory=AIRLSettings)
+    head: type[AbstractHead] = ShapedReward
+
+    @property
+    def iterations(self) -> int:
+        """N."""
+        return self.settings.iterations
+
+    def policy(self, state: TrainingState) -> GaussianPolicy:
+        """The averaged policy."""
+        return state.average
+
+    def start(self, task: Task[Expert], key: Array) -> TrainingState:
+        """Initial policy pi_0 and reward r_0; the replay is filled with transitions of pi_0."""
+        settings = self.settings
+        learner_key, head_key, replay_key, key = jax.random.split(key, 4)
+        learner = ppo.start(settings.ppo, learner_key)
+        head = self.head.random(settings.hidden, settings.ppo.discount, head_key)
+        deviation = self._deviation(jnp.zeros(()))
+        keys = jax.random.split(replay_key, settings.replayed)
+        replay = jax.vmap(lambda k: self._agent(task.environment, learner, deviation, k))(keys)
+        return TrainingState(
+            learner=learner,
+            head=head,
+            head_optimiser=begin(_optimiser(settings), head),
+            replay=replay,
+            average=learner.networks.policy,
+            iteration=jnp.zeros((), int),
+            key=key,
+        )
+
+    def iterate(self, state: TrainingState, task: Task[Expert]) -> tuple[TrainingState, Progress]:
+        """One iteration n of Algorithm 1 (its lines 3 to 10)."""
+        settings, n = self.settings, state.iteration
+        key, collect_key, head_key, trajectory_key, update_key = jax.random.split(state.key, 5)
+        policy, deviation = state.learner.networks.policy, self._deviation(n)
+
+        # Learn the reward function of the home (lines 3 to 8).
+        fresh = self._agent(task.environment, state.learner, deviation, collect_key)
+        replay = jax.tree.map(lambda old, new: old.at[n % settings.replayed].set(new), state.replay, fresh)
+        contest = Contest(task.teacher, replay, policy, deviation)
+        head, head_optimiser, measured = learn_head(
+            state.head, state.head_optimiser, contest, settings, head_key
+        )
+
+        # Train the energy management policy (lines 9 and 10).
+        shape = (settings.ppo.slots, settings.ppo.rollouts)
+        rollout = collect(task.environment, policy, deviation, shape, trajectory_key)
+        rewards = head.rewards(rollout.transitions)
+        objective = ppo.Objective(rewards, deviation, share=falling(n, settings.iterations))
+        learner = ppo.update(state.learner, rollout, objective, settings.ppo, update_key)
+
+        average = settings.exploration.averaged(state.average, learner.networks.policy, n)
+        progress = Progress(
+            *measured,
+            learned_reward=jnp.mean(rewards),
+            energy_cost=jnp.mean(rollout.costs.transaction + rollout.costs.ageing),
+            temperature_deviation=jnp.mean(rollout.costs.temperature_deviation),
+        )
+        return TrainingState(learner, head, head_optimiser, replay, average, n + 1, key), progress
+
+    def _deviation(self, iteration: Array) -> Float[Array, "actions"]:
+        return self.settings.exploration.deviation(iteration, self.settings.iterations)
+
+    def _agent(
+        self, environment: Environment, learner: ppo.Learner, deviation: Array, key: Array
+    ) -> Transitions:
+        shape = (self.settings.ppo.slots, self.settings.agent_rollouts)
+        rollout = collect(environment, learner.networks.policy, deviation, shape, key)
+        return jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), rollout.transitions)
 
 
-def start(environment: Environment, settings: AIRLSettings, key: Array) -> TrainingState:
-    """Initial policy pi_0 and reward r_0; the replay is filled with transitions of pi_0."""
-    learner_key, reward_key, replay_key, key = jax.random.split(key, 4)
-    learner = ppo.start(settings.ppo, learner_key)
-    reward = ShapedReward(settings.hidden, settings.ppo.discount, reward_key)
-    deviation = deviation_at(jnp.zeros(()), settings)
-    keys = jax.random.split(replay_key, settings.replayed)
-    replay = jax.vmap(lambda k: _agent_transitions(environment, learner, deviation, settings, k))(keys)
-    return TrainingState(
-        learner=learner,
-        reward=reward,
-        reward_optimiser=begin(_optimiser(settings), reward),
-        replay=replay,
-        average=learner.networks.policy,
-        iteration=jnp.zeros((), int),
-        key=key,
-    )
+class Contest(eqx.Module):
+    """What the discriminator has to tell apart."""
+
+    expert: Expert
+    replay: Transitions
+    """Of the agent, (replayed, samples, ...)."""
+    policy: GaussianPolicy
+    """Present policy: log pi of both sides is taken under it, without gradient."""
+    deviation: Float[Array, "actions"]
+    """Its sigma, and that of the expert's jitter."""
+
+    def density(self, transitions: Transitions, bound: float) -> Float[Array, "samples"]:
+        """log pi(a|s) within plus and minus ``bound``: an action far from the mean would otherwise have an
+        unbounded logit, and its reward no gradient."""
+        means = jax.vmap(self.policy.mean)(transitions.features)
+        return jnp.clip(log_density(transitions.fractions, means, self.deviation), -bound, bound)
+
+    def sample(self, batch: int, key: Array) -> tuple[Transitions, Transitions]:
+        """So many transitions of the expert, jittered, and as many of the agent."""
+        expert_key, jitter_key, agent_key = jax.random.split(key, 3)
+        rows = jax.random.randint(expert_key, (batch,), 0, self.expert.available)
+        experts = jax.tree.map(lambda x: x[rows], self.expert.transitions)
+        jitter = self.deviation * jax.random.normal(jitter_key, experts.fractions.shape)
+        experts = eqx.tree_at(lambda t: t.fractions, experts, experts.fractions + jitter)
+        agent = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), self.replay)
+        rows = jax.random.randint(agent_key, (batch,), 0, agent.fractions.shape[0])
+        return experts, jax.tree.map(lambda x: x[rows], agent)
 
 
-def iterate(
-    state: TrainingState, environment: Environment, expert: Expert, settings: AIRLSettings
-) -> tuple[TrainingState, Progress]:
-    """One iteration n of Algorithm 1 (its lines 3 to 10)."""
-    key, collect_key, reward_key, trajectory_key, update_key = jax.random.split(state.key, 5)
-    policy, deviation = state.learner.networks.policy, deviation_at(state.iteration, settings)
+def learn_head(
+    head: AbstractHead, optimiser_state: optax.OptState, contest: Contest, settings: AIRLSettings, key: Array
+) -> tuple[AbstractHead, optax.OptState, tuple[Array, Array, Array]]:
+    """The better discriminator, its optimiser, and (loss, expert accuracy, agent accuracy) over the steps."""
 
-    # Learn the reward function of the home (lines 3 to 8).
-    fresh = _agent_transitions(environment, state.learner, deviation, settings, collect_key)
-    replay = jax.tree.map(
-        lambda old, new: old.at[state.iteration % settings.replayed].set(new), state.replay, fresh
-    )
-    reward, reward_optimiser, measured = _learn_reward(state, expert, replay, settings, reward_key)
-
-    # Train the energy management policy (lines 9 and 10).
-    shape = (settings.ppo.slots, settings.ppo.rollouts)
-    rollout = collect(environment, policy, deviation, shape, trajectory_key)
-    rewards = reward.batch(rollout.transitions)
-    objective = ppo.Objective(rewards, deviation, share=1.0 - 0.9 * state.iteration / settings.iterations)
-    learner = ppo.update(state.learner, rollout, objective, settings.ppo, update_key)
-
-    keep = jnp.minimum(settings.averaging, state.iteration / (state.iteration + 10.0))
-    average = jax.tree.map(lambda a, p: keep * a + (1 - keep) * p, state.average, learner.networks.policy)
-    progress = Progress(
-        *measured,
-        learned_reward=jnp.mean(rewards),
-        energy_cost=jnp.mean(rollout.costs.transaction + rollout.costs.ageing),
-        temperature_deviation=jnp.mean(rollout.costs.temperature_deviation),
-    )
-    return TrainingState(
-        learner, reward, reward_optimiser, replay, average, state.iteration + 1, key
-    ), progress
-
-
-def _agent_transitions(
-    environment: Environment, learner: ppo.Learner, deviation: Array, settings: AIRLSettings, key: Array
-) -> Transitions:
-    shape = (settings.ppo.slots, settings.agent_rollouts)
-    rollout = collect(environment, learner.networks.policy, deviation, shape, key)
-    return jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), rollout.transitions)
-
-
-def _optimiser(settings: AIRLSettings) -> optax.GradientTransformation:
-    return optax.adam(settings.learning_rate, b1=0.5)
-
-
-def _learn_reward(
-    state: TrainingState, expert: Expert, replay: Transitions, settings: AIRLSettings, key: Array
-) -> tuple[ShapedReward, optax.OptState, tuple[Array, Array, Array]]:
-    """r_{n+1}, its optimiser, and (loss, expert accuracy, agent accuracy) as means over the steps."""
-    deviation = deviation_at(state.iteration, settings)
-    policy = state.learner.networks.policy
-    agent = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), replay)
-
-    def density(transitions: Transitions) -> Array:
-        means = jax.vmap(policy.mean)(transitions.features)
-        return log_density(transitions.fractions, means, deviation)
-
-    def sample(source: Transitions, available: Array | int, key: Array) -> Transitions:
-        rows = jax.random.randint(key, (settings.batch,), 0, available)
-        return jax.tree.map(lambda x: x[rows], source)
-
-    def objective(reward: ShapedReward, experts: Transitions, agents: Transitions, key: Array):
-        expert_logits = logits(reward, experts, density(experts), settings.log_density_bound)
-        agent_logits = logits(reward, agents, density(agents), settings.log_density_bound)
+    def objective(head: AbstractHead, experts: Transitions, agents: Transitions, key: Array):
+        bound = settings.log_density_bound
+        expert_logits = head.logits(experts, contest.density(experts, bound))
+        agent_logits = head.logits(agents, contest.density(agents, bound))
         loss = cross_entropy(expert_logits, agent_logits)
-        penalty = gradient_penalty(reward, experts, agents, key)
+        penalty = gradient_penalty(head, experts, agents, key)
         measured = (loss, jnp.mean(expert_logits > 0), jnp.mean(agent_logits < 0))
         return loss + settings.penalty * penalty, measured
 
     def step(carry, key: Array):
-        reward, optimiser_state = carry
-        expert_key, jitter_key, agent_key, penalty_key = jax.random.split(key, 4)
-        experts = sample(expert.transitions, expert.available, expert_key)
-        jitter = deviation * jax.random.normal(jitter_key, experts.fractions.shape)
-        experts = eqx.tree_at(lambda t: t.fractions, experts, experts.fractions + jitter)
-        agents = sample(agent, agent.fractions.shape[0], agent_key)
-        gradient, measured = jax.grad(objective, has_aux=True)(reward, experts, agents, penalty_key)
-        return descend(_optimiser(settings), gradient, optimiser_state, reward), measured
+        head, optimiser_state = carry
+        sample_key, penalty_key = jax.random.split(key)
+        batches = contest.sample(settings.batch, sample_key)
+        gradient, measured = jax.grad(objective, has_aux=True)(head, *batches, penalty_key)
+        return descend(_optimiser(settings), gradient, optimiser_state, head), measured
 
     keys = jax.random.split(key, settings.steps)
-    (reward, optimiser_state), measured = jax.lax.scan(step, (state.reward, state.reward_optimiser), keys)
-    return reward, optimiser_state, jax.tree.map(jnp.mean, measured)
+    (head, optimiser_state), measured = jax.lax.scan(step, (head, optimiser_state), keys)
+    return head, optimiser_state, jax.tree.map(jnp.mean, measured)
+
+
+def _optimiser(settings: AIRLSettings) -> optax.GradientTransformation:
+    return optax.adam(settings.learning_rate, b1=0.5)

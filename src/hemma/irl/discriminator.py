@@ -1,25 +1,13 @@
-"""The discriminator of equation (10) in logits: expert or agent?"""
+"""The discriminator's loss, equation (12), and what keeps its slope in bounds."""
 
 import jax
 import jax.numpy as jnp
 import optax
 from jaxtyping import Float
 
-from hemma.irl.reward import ShapedReward
+from hemma.irl.reward import AbstractHead
 from hemma.rl.environment import Transitions
 from hemma.types import Array
-
-
-def logits(
-    reward: ShapedReward, transitions: Transitions, log_density: Float[Array, "samples"], bound: float
-) -> Float[Array, "samples"]:
-    """Logit of the discriminator score, equation (10).
-
-    d = exp(r) / (exp(r) + pi) means log d - log(1 - d) = r - log pi: the logit needs no ratio and no
-    exponential. log pi is limited to [-bound, bound]: an expert's action far from the policy's mean would
-    otherwise have an unbounded logit and its reward no gradient.
-    """
-    return reward.batch(transitions) - jnp.clip(log_density, -bound, bound)
 
 
 def cross_entropy(expert_logits: Float[Array, "samples"], agent_logits: Float[Array, "samples"]) -> Array:
@@ -29,8 +17,8 @@ def cross_entropy(expert_logits: Float[Array, "samples"], agent_logits: Float[Ar
     return 0.5 * (jnp.mean(expert) + jnp.mean(agent))
 
 
-def gradient_penalty(reward: ShapedReward, expert: Transitions, agent: Transitions, key: Array) -> Array:
-    """E[max(|grad r| - 1, 0)^2] between expert and agent: keeps r Lipschitz.
+def gradient_penalty(head: AbstractHead, expert: Transitions, agent: Transitions, key: Array) -> Array:
+    """E[max(|grad r| - 1, 0)^2] between expert and agent: keeps the head (AIRL: r) Lipschitz.
 
     Gulrajani et al. 2017 (arXiv 1704.00028), one-sided, in the features and
     fractions of a transition; Orsini et al. 2021 (arXiv 2106.00672) find that regularising the
@@ -40,7 +28,7 @@ def gradient_penalty(reward: ShapedReward, expert: Transitions, agent: Transitio
     between = jax.tree.map(lambda e, a: share * e + (1 - share) * a, expert, agent)
 
     def norm(transition: Transitions) -> Array:
-        gradient = jax.grad(lambda t: reward(t))(transition)
+        gradient = jax.grad(lambda t: head(t))(transition)
         return jnp.sqrt(sum(jnp.sum(g**2) for g in jax.tree.leaves(gradient)) + 1e-12)
 
     return jnp.mean(jnp.maximum(jax.vmap(norm)(between) - 1.0, 0.0) ** 2)

@@ -1,4 +1,6 @@
-"""The learned reward r = g + gamma h' - h, equation (11) of the paper (Fu et al. 2018)."""
+"""What tells expert from agent, and what the agent is paid for it: one head for each adversarial method."""
+
+from abc import abstractmethod
 
 import equinox as eqx
 import jax
@@ -11,22 +13,49 @@ from hemma.rl.policy import ACTIONS, FEATURES
 from hemma.types import Array
 
 
-class ShapedReward(eqx.Module):
-    """The reward approximator g(s, a) and the shaping term h(s)."""
+class AbstractHead(eqx.Module):
+    """The learned part of a discriminator."""
+
+    @classmethod
+    @abstractmethod
+    def random(cls, hidden: tuple[int, ...], discount: float, key: Array) -> "AbstractHead":
+        """A head with random weights and hidden layers of these sizes; ``discount`` is gamma."""
+
+    @abstractmethod
+    def __call__(self, transition: Transitions) -> Float[Array, ""]:
+        """The learned part of the logit of one transition."""
+
+    @abstractmethod
+    def logits(self, transitions: Transitions, log_density: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
+        """log d - log(1 - d), d the probability that the expert did it, who acts with log pi(a|s)."""
+
+    @abstractmethod
+    def rewards(self, transitions: Transitions) -> Float[Array, "*batch"]:
+        """What the policy is to maximise."""
+
+    def batch(self, transitions: Transitions) -> Float[Array, "*batch"]:
+        """``self`` of many transitions at once."""
+        shape = transitions.fractions.shape[:-1]
+        flat = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), transitions)
+        return jax.vmap(self)(flat).reshape(shape)
+
+
+class ShapedReward(AbstractHead):
+    """AIRL: the learned reward r = g + gamma h' - h, equation (11) of the paper (Fu et al. 2018)."""
 
     approximator: Network
-    """g."""
+    """g(s, a)."""
     shaping: Network
-    """h."""
+    """h(s)."""
     discount: float = eqx.field(static=True)
     """gamma."""
 
-    def __init__(self, hidden: tuple[int, ...], discount: float, key: Array):
-        """Random weights."""
+    @classmethod
+    def random(cls, hidden: tuple[int, ...], discount: float, key: Array) -> "ShapedReward":
+        """Random g and h."""
         g_key, h_key = jax.random.split(key)
-        self.approximator = Network((FEATURES + ACTIONS, *hidden, 1), g_key)
-        self.shaping = Network((FEATURES, *hidden, 1), h_key)
-        self.discount = discount
+        g = Network((FEATURES + ACTIONS, *hidden, 1), g_key)
+        return cls(g, Network((FEATURES, *hidden, 1), h_key), discount)
 
     def __call__(self, transition: Transitions) -> Float[Array, ""]:
         """r(s, a, s') = g(s, a) + gamma h(s') - h(s) of one transition."""
@@ -38,8 +67,37 @@ class ShapedReward(eqx.Module):
             - self.shaping(transition.features)[0]
         )
 
-    def batch(self, transitions: Transitions) -> Float[Array, "*batch"]:
-        """r of many transitions at once."""
-        shape = transitions.fractions.shape[:-1]
-        flat = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), transitions)
-        return jax.vmap(self)(flat).reshape(shape)
+    def logits(self, transitions: Transitions, log_density: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
+        """r - log pi: equation (10), d = exp(r) / (exp(r) + pi), needs no ratio and no exponential."""
+        return self.batch(transitions) - log_density
+
+    def rewards(self, transitions: Transitions) -> Float[Array, "*batch"]:
+        """r."""
+        return self.batch(transitions)
+
+
+class ImitationScore(AbstractHead):
+    """GAIL: a score f(s, a) that knows no policy and leaves no reward behind.
+
+    Ho and Ermon 2016, arXiv 1606.03476.
+    """
+
+    score: Network
+    """f(s, a)."""
+
+    @classmethod
+    def random(cls, hidden: tuple[int, ...], discount: float, key: Array) -> "ImitationScore":
+        """Random f; the discount plays no part in it."""
+        return cls(Network((FEATURES + ACTIONS, *hidden, 1), key))
+
+    def __call__(self, transition: Transitions) -> Float[Array, ""]:
+        """f(s, a) of one transition."""
+        return self.score(jnp.concatenate([transition.features, transition.fractions]))[0]
+
+    def logits(self, transitions: Transitions, log_density: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
+        """f: the score itself is the logit, whatever the policy's density."""
+        return self.batch(transitions)
+
+    def rewards(self, transitions: Transitions) -> Float[Array, "*batch"]:
+        """-log(1 - d) = log(1 + exp f)."""
+        return jax.nn.softplus(self.batch(transitions))

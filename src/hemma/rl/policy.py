@@ -1,5 +1,7 @@
 """The stochastic policy pi(a|s) and the controller that it becomes."""
 
+from typing import Protocol, runtime_checkable
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Float
@@ -14,6 +16,15 @@ FEATURES = 8
 ACTIONS = 2
 SLOPE_BEYOND = 0.05
 """Slope of the mean where it lies beyond [-1, 1]: a flat one would have no gradient to come back by."""
+
+
+@runtime_checkable
+class Policy(Protocol):
+    """What a learner ends with: a module that says what to do, without randomness."""
+
+    def mean(self, features: Float[Array, "features"]) -> Float[Array, "actions"]:
+        """Fractions of what is feasible (``hemma.rl.actions``) in a state of these features."""
+        ...
 
 
 class GaussianPolicy(eqx.Module):
@@ -58,7 +69,7 @@ def log_density(
 class PolicyController(eqx.Module):
     """A trained policy as a controller: the mean action, no randomness. It sees the paper's state only."""
 
-    policy: GaussianPolicy
+    policy: Policy
     scaler: StateScaler
     home: Home
     """Limits of battery and HVAC, to turn fractions into powers."""

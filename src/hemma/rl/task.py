@@ -1,0 +1,133 @@
+"""What one training run learns from: a home and its own days, a teacher, and a seed."""
+
+from collections.abc import Sequence
+from typing import Generic, TypeVar
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Float, Int
+
+from hemma.errors import HemmaError
+from hemma.home import Home
+from hemma.rl.actions import to_fractions
+from hemma.rl.environment import Environment, Transitions
+from hemma.rl.scaling import StateScaler, fit_scaler
+from hemma.types import Action, Array, Costs, Exogenous
+
+ENERGY = 2
+"""Position of E in the paper's state."""
+
+
+class Demonstrated(eqx.Module):
+    """Demonstrations as anyone may bring them: the paper's states and actions in their units."""
+
+    states: Float[Array, "samples 7"]
+    """s = (p, l, E, T_out, T_in, u, t')."""
+    actions: Float[Array, "samples 2"]
+    """a = (e, h) [kW], feasible."""
+    next_states: Float[Array, "samples 7"]
+    """s'."""
+
+
+class Expert(eqx.Module):
+    """A teacher who shows: demonstrations, as learners sample them."""
+
+    transitions: Transitions
+    """Shape (L + padding, ...)."""
+    available: Int[Array, "*runs"]
+    """L; what lies behind is padding and never read."""
+
+
+class ExplicitReward(eqx.Module):
+    """A teacher who pays: the hand-written reward of the paper's DRL baselines (its Section IV).
+
+    r = -(X1 + X2) - beta_T X3 [currency]
+    """
+
+    comfort_price: Float[Array, "*runs"]
+    """beta_T [currency/degC for one slot]."""
+
+    def __call__(self, costs: Costs) -> Float[Array, "*batch"]:
+        """r of slots with these costs."""
+        return -(costs.transaction + costs.ageing) - self.comfort_price * costs.temperature_deviation
+
+
+Teacher = TypeVar("Teacher", bound=eqx.Module)
+"""An ``Expert`` or an ``ExplicitReward``."""
+
+
+class Task(eqx.Module, Generic[Teacher]):
+    """One run, or many stacked along a first axis."""
+
+    environment: Environment
+    teacher: Teacher
+    seed: Int[Array, "*runs"]
+
+
+def make_task(home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed: int) -> Task[Expert]:
+    """The task of learning from ``demonstrated`` and the traces ``exogenous`` of the same days, nothing else.
+
+    The scaler is fitted to the demonstrated states.
+    """
+    if len(demonstrated.actions) != exogenous.slots - 1:
+        raise HemmaError(
+            f"demonstrations: expected {exogenous.slots - 1} transitions for traces of {exogenous.slots} "
+            f"slots, got {len(demonstrated.actions)}; demonstrate and train on the same days"
+        )
+    scaler = fit_scaler(np.asarray(demonstrated.states))
+    actions = Action(*jnp.asarray(demonstrated.actions, float).T)
+    energy = jnp.asarray(demonstrated.states, float)[:, ENERGY]
+    transitions = Transitions(
+        features=scaler(jnp.asarray(demonstrated.states, float)),
+        fractions=to_fractions(home, energy, actions),
+        next_features=scaler(jnp.asarray(demonstrated.next_states, float)),
+    )
+    expert = Expert(transitions, jnp.asarray(len(demonstrated.actions)))
+    return Task(_environment(home, exogenous, scaler), expert, jnp.asarray(seed))
+
+
+def explicit_task(home: Home, exogenous: Exogenous, comfort_price: float, seed: int) -> Task[ExplicitReward]:
+    """The task of learning from the explicit reward with beta_T = ``comfort_price`` on these days.
+
+    The scaler is fitted to the traces, and to battery energies and indoor temperatures as rollouts start
+    with: spread evenly over the battery's range, and over the comfort band and one degree beyond.
+    """
+    battery, comfort = home.battery, home.comfort
+    spread = np.linspace(0.0, 1.0, exogenous.slots)
+    order = np.random.default_rng(0).permutation(exogenous.slots)
+    columns = (
+        exogenous.pv_generation,
+        exogenous.load,
+        battery.min_energy + spread * (battery.max_energy - battery.min_energy),
+        exogenous.outdoor_temperature,
+        comfort.low - 1 + spread[order] * (comfort.high - comfort.low + 2),
+        exogenous.buying_price,
+        exogenous.hour_of_day,
+    )
+    scaler = fit_scaler(np.stack([np.asarray(column, float) for column in columns], axis=1))
+    reward = ExplicitReward(jnp.asarray(comfort_price, float))
+    return Task(_environment(home, exogenous, scaler), reward, jnp.asarray(seed))
+
+
+def stack(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
+    """All tasks along a new first axis; shorter traces and demonstrations are padded with zeros, unread."""
+
+    def together(*leaves: Array) -> Array:
+        if leaves[0].ndim == 0:
+            return jnp.stack(leaves)
+        length = max(leaf.shape[0] for leaf in leaves)
+        return jnp.stack([_pad(leaf, length) for leaf in leaves])
+
+    return jax.tree.map(together, *tasks)
+
+
+def _environment(home: Home, exogenous: Exogenous, scaler: StateScaler) -> Environment:
+    traces = jax.tree.map(lambda x: jnp.asarray(x, float), exogenous)
+    home = jax.tree.map(lambda x: jnp.asarray(x, float), home)
+    return Environment(home, traces, jnp.asarray(exogenous.slots), scaler)
+
+
+def _pad(leaf: Array, length: int) -> Array:
+    return jnp.pad(leaf, [(0, length - leaf.shape[0])] + [(0, 0)] * (leaf.ndim - 1))

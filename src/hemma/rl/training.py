@@ -1,0 +1,183 @@
+"""The one training loop of every learner: runs side by side, in chunks, resumable, with learning curves."""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Float
+
+from hemma.checkpoint import load_header, load_tree, save_tree
+from hemma.errors import HemmaError
+from hemma.home import HomeState, Step, observe
+from hemma.rl.environment import Environment
+from hemma.rl.policy import Policy, PolicyController
+from hemma.rl.task import Task
+from hemma.types import Array
+
+CHUNK = 25
+"""Iterations between two looks at a run: one row of its learning curve, one occasion to save it."""
+
+
+@runtime_checkable
+class Algorithm(Protocol):
+    """A learner, one iteration at a time. Frozen and hashable: it is fixed while its loop is compiled.
+
+    The state is an ``eqx.Module`` of arrays that holds all that training carries from iteration to iteration;
+    progress is an ``eqx.Module`` of scalars, and the names of its fields head the learning curve.
+    """
+
+    @property
+    def iterations(self) -> int:
+        """How many iterations a training takes, a multiple of ``CHUNK``."""
+        ...
+
+    def start(self, task: Task, key: Array) -> Any:
+        """The state of one run before its first iteration."""
+        ...
+
+    def iterate(self, state: Any, task: Task) -> tuple[Any, Any]:
+        """State and progress after one more iteration."""
+        ...
+
+    def policy(self, state: Any) -> Policy:
+        """The result, as far as training has come."""
+        ...
+
+
+class Curve(eqx.Module):
+    """Learning curves: one chunk of one run, or (runs, chunks)."""
+
+    progress: Any
+    """Means of the learner's progress over the chunk."""
+    training_cost: Float[Array, "*chunks"]
+    """X1 + X2 a day of the policy without exploration on its own training days [currency/day]."""
+    training_deviation: Float[Array, "*chunks"]
+    """Mean X3 of the same [degC]."""
+
+
+class Training(eqx.Module):
+    """Runs under way or finished, stacked along a first axis."""
+
+    state: Any
+    curve: Curve
+
+    @property
+    def iterations(self) -> int:
+        """How many iterations are done."""
+        return self.curve.training_cost.shape[1] * CHUNK
+
+
+def begin(task: Task, algorithm: Algorithm) -> Training:
+    """All runs of a stacked task at iteration 0."""
+    state = _start(task, algorithm)
+    shape = jax.eval_shape(partial(_chunk, algorithm=algorithm), state, task)[1]
+    return Training(state, jax.tree.map(lambda x: jnp.zeros((x.shape[0], 0), x.dtype), shape))
+
+
+def advance(training: Training, task: Task, algorithm: Algorithm) -> Training:
+    """All runs, one chunk of iterations further. Raises if a run has diverged."""
+    state, row = _side_by_side(training.state, task, algorithm)
+    figures = jnp.stack([jnp.asarray(leaf, float) for leaf in jax.tree.leaves(row)])
+    healthy = jnp.all(jnp.isfinite(figures), axis=0)
+    if not bool(jnp.all(healthy)):
+        failed = [int(s) for s in task.seed[~healthy]]
+        raise HemmaError(
+            f"{type(algorithm).__name__}: the numbers of seeds {failed} were no longer finite by iteration "
+            f"{training.iterations + CHUNK}; lower its learning rates"
+        )
+    curve = jax.tree.map(lambda old, new: jnp.concatenate([old, new[:, None]], axis=1), training.curve, row)
+    return Training(state, curve)
+
+
+def train(
+    task: Task,
+    algorithm: Algorithm,
+    training: Training | None = None,
+    on_chunk: Callable[[Training], None] = lambda _: None,
+) -> Training:
+    """Run an algorithm to its end, from the beginning or from where ``training`` stands."""
+    training = begin(task, algorithm) if training is None else training
+    while training.iterations < algorithm.iterations:
+        training = advance(training, task, algorithm)
+        on_chunk(training)
+    return training
+
+
+def save(path: Path, training: Training, header: dict[str, Any]) -> None:
+    """Store runs under way, whole or not at all."""
+    save_tree(path, training, {**header, "chunks": training.iterations // CHUNK})
+
+
+def load(path: Path, task: Task, algorithm: Algorithm) -> Training:
+    """What ``save`` stored for the same task and algorithm; going on gives what an unbroken run gives."""
+    like = begin(task, algorithm)
+    chunks = load_header(path)["chunks"]
+    curve = jax.tree.map(lambda x: jnp.zeros((x.shape[0], chunks), x.dtype), like.curve)
+    return load_tree(path, Training(like.state, curve))
+
+
+def controllers(training: Training, task: Task, algorithm: Algorithm) -> PolicyController:
+    """The resulting policies as controllers, stacked like the task."""
+    policies = eqx.filter_vmap(algorithm.policy)(training.state)
+    return PolicyController(policies, task.environment.scaler, task.environment.home)
+
+
+def _side_by_side(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Curve]:
+    """One chunk of all runs, a part of the runs on each core.
+
+    XLA uses little more than one core for a program of many small steps, so each core gets its own.
+    """
+    runs = task.seed.shape[0]
+    cores = min(os.cpu_count() or 1, runs) if jax.default_backend() == "cpu" else 1
+    size = -(-runs // cores)
+    places = jnp.arange(cores * size) % runs  # equal parts share their compiled code; what is over is cut off
+
+    def part(core: int) -> tuple[Any, Curve]:
+        own = places[core * size : (core + 1) * size]
+        mine = jax.tree.map(lambda x: x[own], (state, task))
+        return jax.block_until_ready(_chunk(*mine, algorithm=algorithm))
+
+    with ThreadPoolExecutor(cores) as pool:
+        parts = list(pool.map(part, range(cores)))
+    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves)[:runs], *parts)
+
+
+@partial(jax.jit, static_argnames="algorithm")
+def _start(task: Task, algorithm: Algorithm) -> Any:
+    return jax.vmap(lambda t: algorithm.start(t, jax.random.key(t.seed)))(task)
+
+
+@partial(jax.jit, static_argnames="algorithm")
+def _chunk(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Curve]:
+    def run(state: Any, task: Task) -> tuple[Any, Curve]:
+        def iteration(state: Any, _: None) -> tuple[Any, Any]:
+            return algorithm.iterate(state, task)
+
+        state, progress = jax.lax.scan(iteration, state, length=CHUNK)
+        cost, deviation = _score(algorithm.policy(state), task.environment)
+        return state, Curve(jax.tree.map(jnp.mean, progress), cost, deviation)
+
+    return jax.vmap(run)(state, task)
+
+
+def _score(policy: Policy, environment: Environment) -> tuple[Array, Array]:
+    """Daily cost and mean deviation of the mean action on the training traces, padding left out."""
+    home, traces = environment.home, environment.exogenous
+    controller = PolicyController(policy, environment.scaler, home)
+
+    def slot(state: HomeState, now) -> tuple[HomeState, Step]:
+        action = controller(observe(state, now), jax.random.key(0))
+        step = home.step(state, now, action, jnp.zeros(()))
+        return step.state, step
+
+    _, steps = jax.lax.scan(slot, home.reset(), traces)
+    counted = jnp.arange(traces.slots) < environment.available
+    days = environment.available * home.slot_length / 24
+    cost = jnp.sum(jnp.where(counted, steps.costs.transaction + steps.costs.ageing, 0.0)) / days
+    return cost, jnp.sum(jnp.where(counted, steps.costs.temperature_deviation, 0.0)) / environment.available
