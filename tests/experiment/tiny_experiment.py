@@ -12,11 +12,11 @@ from hemma.experiment.settings import DataEfficiency, Experiment
 def tiny_experiment(iterations=50):
     """Two seeds, two days of demonstrations, and one day for the data efficiency."""
     default = Experiment()
-    ppo = replace(default.airl.ppo, rollouts=4, slots=12, epochs=1, minibatches=2, hidden=(4,))
+    ppo = replace(default.ppo, rollouts=4, slots=12, epochs=1, minibatches=2, hidden=(4,))
     airl = replace(
         default.airl,
         iterations=iterations,
-        ppo=ppo,
+        slots=12,
         hidden=(4,),
         batch=16,
         steps=1,
@@ -26,6 +26,7 @@ def tiny_experiment(iterations=50):
     return replace(
         default,
         airl=airl,
+        ppo=ppo,
         identification=replace(default.identification, updates=20, chunk=10, window=6.0, batch=8, width=4),
         seeds=2,
         demonstration_days=2,

@@ -44,11 +44,14 @@ class Expert:
 
     case: Case
     identification: Identification
+    variant: str = ""
+    """Ends the names of the files of an expert that aims at another comfort band."""
 
     @property
     def mark(self) -> str:
         """Fingerprint of all that the expert's decisions depend on besides the period."""
-        return fingerprint("expert", code("expert"), self.identification.mark, self.case.experiment.expert)
+        settings = self.case.experiment.expert
+        return fingerprint("expert", code("expert"), self.identification.mark, self.case.mark, settings)
 
     @property
     def planning_home(self) -> Home:
@@ -82,7 +85,7 @@ class Expert:
 def demonstration(store: Store, expert: Expert, days: int) -> Demonstration:
     """Let the expert demonstrate ``days`` days, or take what it demonstrated in an earlier run."""
     mark = fingerprint(STAGE, expert.mark, days)
-    product = f"demonstrations-{days}-days"
+    product = f"demonstrations-{days}-days{expert.variant}"
     file = store.model(f"{product}.safetensors")
     content = store.kept(product, mark)
     if content is not None:

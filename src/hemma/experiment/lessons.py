@@ -15,6 +15,7 @@ from hemma.experiment.train import Lesson
 from hemma.irl.airl import AdversarialImitation
 from hemma.irl.reward import ImitationScore
 from hemma.rl import task
+from hemma.rl.improvement import Proximal
 from hemma.rl.task import make_task
 from hemma.rl.training import Algorithm
 
@@ -42,11 +43,12 @@ def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, .
     """
     short = experiment.demonstration_days
     long = min(experiment.long_demonstration_days, training_days)
-    airl = AdversarialImitation(experiment.airl)
+    by_ppo = Proximal(experiment.ppo)
+    airl = AdversarialImitation(experiment.airl, by_ppo)
     known = (
         ("HA-1", airl, short),
         ("HA-2", airl, long),
-        ("GAIL", AdversarialImitation(experiment.airl, ImitationScore), short),
+        ("GAIL", AdversarialImitation(experiment.airl, by_ppo, ImitationScore), short),
     )
     wanted = [
         Imitation(method, algorithm, days, experiment.seeds, method)

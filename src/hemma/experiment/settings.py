@@ -9,6 +9,7 @@ from hemma.home.checks import require
 from hemma.identification.excitation import Excitation
 from hemma.identification.settings import IdentificationSettings
 from hemma.irl.airl import AIRLSettings
+from hemma.rl.ppo import PPOSettings
 
 LEARNED = ("HA-1", "HA-2", "GAIL")
 
@@ -52,6 +53,8 @@ class Experiment:
     identification: IdentificationSettings = field(default_factory=IdentificationSettings)
     expert: HierarchySettings = field(default_factory=HierarchySettings)
     airl: AIRLSettings = field(default_factory=AIRLSettings)
+    ppo: PPOSettings = field(default_factory=PPOSettings)
+    """Of every policy that is improved by PPO."""
     learned: tuple[str, ...] = LEARNED
     """Learned methods to run, of HA-1, HA-2, GAIL."""
     seeds: int = 5

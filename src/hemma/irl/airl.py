@@ -1,6 +1,7 @@
 """Algorithm 1 of the paper: adversarial inverse reinforcement learning, or imitation, from demonstrations."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -11,12 +12,11 @@ from jaxtyping import Float, Int
 from hemma.home.checks import require
 from hemma.irl.discriminator import cross_entropy, gradient_penalty
 from hemma.irl.reward import AbstractHead, ShapedReward
-from hemma.rl import ppo
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Environment, Transitions, collect
 from hemma.rl.exploration import Exploration, falling
+from hemma.rl.improvement import Effort, Improvement, Proximal
 from hemma.rl.policy import GaussianPolicy, log_density
-from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
@@ -30,6 +30,8 @@ class AIRLSettings:
     """N, a multiple of 25."""
     agent_rollouts: int = 16
     """Rollouts collected for the discriminator in an iteration."""
+    slots: int = 48
+    """Length of these rollouts."""
     replayed: int = 8
     """Iterations whose agent transitions the discriminator still sees."""
     steps: int = 4
@@ -46,14 +48,12 @@ class AIRLSettings:
     """Units of the hidden layers of g, and of h."""
     exploration: Exploration = field(default_factory=Exploration)
     """Of the policy; the expert's jitter has the same sigma."""
-    ppo: PPOSettings = field(default_factory=PPOSettings)
-    """Of the policy's update."""
 
     def __post_init__(self):
         """Refuse settings without meaning."""
         whole = self.iterations >= CHUNK and self.iterations % CHUNK == 0
         require("airl", whole, f"iterations a multiple of {CHUNK}", self.iterations)
-        for name in ("agent_rollouts", "replayed", "steps", "batch"):
+        for name in ("agent_rollouts", "slots", "replayed", "steps", "batch"):
             require("airl", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
         for name in ("learning_rate", "log_density_bound"):
             require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
@@ -66,8 +66,8 @@ class AIRLSettings:
 class TrainingState(eqx.Module):
     """All that training carries from iteration to iteration: save it, and training goes on the same."""
 
-    learner: ppo.Learner
-    """pi_n with its value function and optimiser."""
+    learner: Any
+    """pi_n and what its improvement carries on."""
     head: AbstractHead
     """AIRL: r_n."""
     head_optimiser: optax.OptState
@@ -97,9 +97,10 @@ class Progress(eqx.Module):
 
 @dataclass(frozen=True)
 class AdversarialImitation:
-    """Algorithm 1 with the head of AIRL (the paper), or with that of GAIL: one loop, two arguments."""
+    """Algorithm 1. Its arguments make it AIRL by PPO (the paper), AIRL by analytic gradient, or GAIL."""
 
     settings: AIRLSettings = field(default_factory=AIRLSettings)
+    improvement: Improvement = field(default_factory=Proximal)
     head: type[AbstractHead] = ShapedReward
 
     @property
@@ -115,17 +116,18 @@ class AdversarialImitation:
         """Initial policy pi_0 and reward r_0; the replay is filled with transitions of pi_0."""
         settings = self.settings
         learner_key, head_key, replay_key, key = jax.random.split(key, 4)
-        learner = ppo.start(settings.ppo, learner_key)
-        head = self.head.random(settings.hidden, settings.ppo.discount, head_key)
+        learner = self.improvement.start(learner_key)
+        policy = self.improvement.policy(learner)
+        head = self.head.random(settings.hidden, self.improvement.discount, head_key)
         deviation = self._deviation(jnp.zeros(()))
         keys = jax.random.split(replay_key, settings.replayed)
-        replay = jax.vmap(lambda k: self._agent(task.environment, learner, deviation, k))(keys)
+        replay = jax.vmap(lambda k: self._agent(task.environment, policy, deviation, k))(keys)
         return TrainingState(
             learner=learner,
             head=head,
             head_optimiser=begin(_optimiser(settings), head),
             replay=replay,
-            average=learner.networks.policy,
+            average=policy,
             iteration=jnp.zeros((), int),
             key=key,
         )
@@ -133,41 +135,34 @@ class AdversarialImitation:
     def iterate(self, state: TrainingState, task: Task[Expert]) -> tuple[TrainingState, Progress]:
         """One iteration n of Algorithm 1 (its lines 3 to 10)."""
         settings, n = self.settings, state.iteration
-        key, collect_key, head_key, trajectory_key, update_key = jax.random.split(state.key, 5)
-        policy, deviation = state.learner.networks.policy, self._deviation(n)
+        key, collect_key, head_key, improve_key = jax.random.split(state.key, 4)
+        policy, deviation = self.improvement.policy(state.learner), self._deviation(n)
 
         # Learn the reward function of the home (lines 3 to 8).
-        fresh = self._agent(task.environment, state.learner, deviation, collect_key)
+        fresh = self._agent(task.environment, policy, deviation, collect_key)
         replay = jax.tree.map(lambda old, new: old.at[n % settings.replayed].set(new), state.replay, fresh)
         contest = Contest(task.teacher, replay, policy, deviation)
-        head, head_optimiser, measured = learn_head(
+        head, head_optimiser, judged = learn_head(
             state.head, state.head_optimiser, contest, settings, head_key
         )
 
         # Train the energy management policy (lines 9 and 10).
-        shape = (settings.ppo.slots, settings.ppo.rollouts)
-        rollout = collect(task.environment, policy, deviation, shape, trajectory_key)
-        rewards = head.rewards(rollout.transitions)
-        objective = ppo.Objective(rewards, deviation, share=falling(n, settings.iterations))
-        learner = ppo.update(state.learner, rollout, objective, settings.ppo, update_key)
-
-        average = settings.exploration.averaged(state.average, learner.networks.policy, n)
-        progress = Progress(
-            *measured,
-            learned_reward=jnp.mean(rewards),
-            energy_cost=jnp.mean(rollout.costs.transaction + rollout.costs.ageing),
-            temperature_deviation=jnp.mean(rollout.costs.temperature_deviation),
+        effort = Effort(deviation, falling(n, settings.iterations))
+        learner, measured = self.improvement.improve(
+            state.learner, task.environment, lambda r: head.rewards(r.transitions), effort, improve_key
         )
+        average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
+        progress = Progress(*judged, measured.reward, measured.energy_cost, measured.temperature_deviation)
         return TrainingState(learner, head, head_optimiser, replay, average, n + 1, key), progress
 
     def _deviation(self, iteration: Array) -> Float[Array, "actions"]:
         return self.settings.exploration.deviation(iteration, self.settings.iterations)
 
     def _agent(
-        self, environment: Environment, learner: ppo.Learner, deviation: Array, key: Array
+        self, environment: Environment, policy: GaussianPolicy, deviation: Array, key: Array
     ) -> Transitions:
-        shape = (self.settings.ppo.slots, self.settings.agent_rollouts)
-        rollout = collect(environment, learner.networks.policy, deviation, shape, key)
+        shape = (self.settings.slots, self.settings.agent_rollouts)
+        rollout = collect(environment, policy, deviation, shape, key)
         return jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), rollout.transitions)
 
 
