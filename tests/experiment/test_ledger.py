@@ -12,7 +12,7 @@ from hemma.experiment.results import Head, HomeResults, MethodResults, Period, R
 
 
 def run(seed=None, cost=1.0, schedule="schedules/a/Rule.csv", curve=None):
-    return Run(seed, Metrics(cost, cost, 0.0, 0.1, 2.4, math.nan, None, None), schedule, curve)
+    return Run(seed, Metrics(cost, cost, 0.0, 0.1, 2.4, math.nan, None, cost - 0.5, None), schedule, curve)
 
 
 def home(name="a", methods=()):

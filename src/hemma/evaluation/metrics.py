@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hemma.evaluation.regret import regret
 from hemma.evaluation.replay import Outcome
 
 NEGLIGIBLE = 1e-6
@@ -38,6 +39,8 @@ class Metrics:
     """(cost - optimum(D)) / |optimum(D)|, a fraction; None where optimum(D) is zero."""
     share_of_savings: float | None
     """(no_battery(D) - cost) / (no_battery(D) - optimum(D)); None where a battery saves nothing."""
+    regret: float
+    """cost - optimum(D) [currency]: what perfect information would have saved at equal comfort."""
     seconds_to_train: float | None
     """Wall-clock time of the training [s], compilation included; None without training."""
 
@@ -53,6 +56,7 @@ def measure(outcome: Outcome, reference: EqualComfort, seconds_to_train: float |
         total_temperature_deviation=outcome.total_deviation,
         gap_to_optimum=_ratio(cost - reference.optimum, abs(reference.optimum)),
         share_of_savings=_ratio(reference.no_battery - cost, reference.no_battery - reference.optimum),
+        regret=regret(cost, reference.optimum),
         seconds_to_train=seconds_to_train,
     )
 

@@ -81,6 +81,36 @@ class MethodResults:
 
 
 @dataclass(frozen=True)
+class MethodRegret:
+    """The mean regret of a method over its runs, and where it comes from [currency].
+
+    total = future + thermal_model + policy, as ``hemma.evaluation.regret.RegretSplit`` explains them.
+    """
+
+    method: str
+    total: float
+    future: float
+    thermal_model: float
+    policy: float
+
+
+@dataclass(frozen=True)
+class ParetoPoint:
+    """One point of a sweep that trades energy cost for comfort; a mean where there are several runs."""
+
+    series: str
+    """``optimum``, or the method that was swept."""
+    parameter: str
+    """What was swept."""
+    value: float
+    energy_cost: float
+    """[currency] over the test period."""
+    mean_temperature_deviation: float
+    """[degC]."""
+    runs: int
+
+
+@dataclass(frozen=True)
 class HomeResults:
     """All that was found about one home; grows stage by stage."""
 
@@ -99,6 +129,8 @@ class HomeResults:
     optimum: PlainOptimum | None = None
     methods: tuple[MethodResults, ...] = ()
     data_efficiency: tuple[MethodResults, ...] = ()
+    regret: tuple[MethodRegret, ...] = ()
+    pareto: tuple[ParetoPoint, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -140,12 +172,14 @@ def home_document(home: HomeResults) -> dict[str, Any]:
             "seconds": _number(home.identification.seconds),
         }
     if home.optimum is not None:
-        content["optimum"] = {name: _number(value) for name, value in asdict(home.optimum).items()}
+        content["optimum"] = _finite(asdict(home.optimum))
     content["demonstration_days"] = {m.method: m.days for m in home.methods if m.days is not None}
     content["methods"] = {m.method: _method_document(m.runs) for m in home.methods}
     content["data_efficiency"] = [
         {"days": m.days, "method": m.method, **_method_document(m.runs)} for m in home.data_efficiency
     ]
+    content["regret"] = {r.method: _regret_document(r) for r in home.regret}
+    content["pareto"] = [_finite(asdict(point)) for point in home.pareto]
     return content
 
 
@@ -175,8 +209,21 @@ def _method_document(runs: Sequence[Run]) -> dict[str, Any]:
 
 
 def _run_document(run: Run) -> dict[str, Any]:
-    metrics = {name: _number(value) for name, value in asdict(run.metrics).items()}
-    return {"seed": run.seed, **metrics, "schedule": run.schedule, "curve": run.curve}
+    return {
+        "seed": run.seed,
+        **_finite(asdict(run.metrics)),
+        "schedule": run.schedule,
+        "curve": run.curve,
+    }
+
+
+def _regret_document(regret: MethodRegret) -> dict[str, Any]:
+    return _finite({name: value for name, value in asdict(regret).items() if name != "method"})
+
+
+def _finite(record: dict[str, Any]) -> dict[str, Any]:
+    """The record with null for every number that JSON does not know."""
+    return {name: _number(value) if isinstance(value, float) else value for name, value in record.items()}
 
 
 def _number(value: float | None) -> float | None:
