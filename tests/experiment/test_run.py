@@ -6,12 +6,10 @@ import math
 import shutil
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from tiny_experiment import Watching, tiny_experiment, tiny_job
 
 from hemma.errors import HemmaError
-from hemma.evaluation import EXOGENOUS_COLUMNS, SCHEDULE_COLUMNS
 from hemma.experiment.results import RESULTS_FILE
 from hemma.experiment.run import Stage, run
 from hemma.home import Battery
@@ -80,31 +78,6 @@ def test_no_number_is_nan(finished):
         return [number for child in children for number in numbers(child)]
 
     assert all(math.isfinite(number) for number in numbers(finished[1]))
-
-
-def test_every_cost_and_deviation_follows_from_the_schedules(finished):
-    """Recomputed from the CSV files alone, as anyone could."""
-    folder, content = finished
-    home = content["homes"][HOME]
-    header, rows = read_csv(folder / f"schedules/{HOME}/exogenous.csv")
-    assert tuple(header) == EXOGENOUS_COLUMNS
-    pv, load, _, buy, sell = np.array([row[1:] for row in rows], float).T
-    runs = [run for m in (*home["methods"].values(), *home["data_efficiency"]) for run in m["runs"]]
-    assert len(runs) == 2 + 4 + 2 + 2
-    for one in runs:
-        header, rows = read_csv(folder / one["schedule"])
-        assert tuple(header) == SCHEDULE_COLUMNS
-        battery, hvac, energy, indoor, grid, cost = np.array([row[1:] for row in rows], float).T
-        assert len(rows) == 48
-        np.testing.assert_allclose(grid, hvac + battery + load - pv, atol=1e-9)
-        transaction = np.where(grid > 0, buy, sell) * grid
-        np.testing.assert_allclose(cost, transaction + 0.001 * np.abs(battery), atol=1e-9)
-        deviation = np.maximum(indoor - 24, 0) + np.maximum(19 - indoor, 0)
-        assert one["transaction_cost"] == pytest.approx(transaction.sum(), abs=1e-9)
-        assert one["energy_cost"] == pytest.approx(cost.sum(), abs=1e-9)
-        assert one["mean_temperature_deviation"] == pytest.approx(deviation.mean(), abs=1e-9)
-        stored = np.where(battery > 0, 0.95 * battery, battery / 0.95)
-        np.testing.assert_allclose(energy, 1.2 + np.cumsum(stored), atol=1e-9)
 
 
 def test_nothing_beats_the_optimum_at_equal_comfort(finished):
