@@ -2,22 +2,36 @@
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 
 from hemma.evaluation import Metrics
+from hemma.experiment.document import home_document
 from hemma.experiment.ledger import is_part_of, open_ledger
 from hemma.experiment.progress import Silence
-from hemma.experiment.results import Head, HomeResults, MethodResults, Period, Run, home_document
+from hemma.experiment.results import Head, HomeResults, MethodRegret, MethodResults, ParetoPoint, Period, Run
 
 
 def run(seed=None, cost=1.0, schedule="schedules/a/Rule.csv", curve=None):
     return Run(seed, Metrics(cost, cost, 0.0, 0.1, 2.4, math.nan, None, cost - 0.5, None), schedule, curve)
 
 
-def home(name="a", methods=()):
+def home(name="a", methods=(), data_efficiency=()):
     period = Period("2021-08-01T00:00:00-06:00", 24)
-    return HomeResults(name, "made up", "$", (), "00", 1.0, period, period, (19.0, 24.0), methods=methods)
+    return HomeResults(
+        name,
+        "made up",
+        "$",
+        (),
+        "00",
+        1.0,
+        period,
+        period,
+        (19.0, 24.0),
+        methods=methods,
+        data_efficiency=data_efficiency,
+    )
 
 
 class Notices(Silence):
@@ -109,9 +123,81 @@ def test_a_broken_results_file_does_not_stop_a_new_run(tmp_path, broken):
     assert set(content(tmp_path)["homes"]) == {"a"}
 
 
+def test_a_shorter_list_of_records_does_not_replace_a_longer_one(tmp_path):
+    """A repeated run finds one length of demonstrations after the other; the file keeps them all."""
+    lengths = tuple(MethodResults("AIRL", (run(0, float(days)),), days=days) for days in (3, 7, 15))
+    open_ledger(tmp_path, Head("hemma", {}), Silence()).put(home(data_efficiency=lengths))
+    before = (tmp_path / "results.json").read_bytes()
+    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
+    ledger.put(home(data_efficiency=lengths[:2]))
+    assert (tmp_path / "results.json").read_bytes() == before
+    ledger.put(home(data_efficiency=(replace(lengths[0], runs=(run(0, 99.0),)),)))
+    [only] = content(tmp_path)["homes"]["a"]["data_efficiency"]
+    assert only["mean"]["energy_cost"] == 99.0
+
+
+def test_what_follows_from_the_runs_is_computed_anew_when_the_file_is_written(tmp_path):
+    """Homes of an earlier run join the comparisons; a repeated run changes nothing."""
+    head = Head("hemma", {})
+    methods = (MethodResults("HA-1", (run(0, 1.0), run(1, 2.0))), MethodResults("Rule", (run(None, 3.0),)))
+    open_ledger(tmp_path, head, Silence()).put(home("a", methods))
+    assert "aggregate" not in content(tmp_path)
+    open_ledger(tmp_path, head, Silence()).put(home("b", methods))
+    written = content(tmp_path)
+    assert written["aggregate"]["homes"] == ["a", "b"]
+    assert set(written["aggregate"]["methods"]) == {"HA-1", "Rule"}
+    [pair] = written["homes"]["a"]["probability_of_improvement"]
+    assert (pair["method"], pair["over"], pair["probability"]) == ("HA-1", "Rule", 1.0)
+    ledger = open_ledger(tmp_path, head, Silence())
+    ledger.put(home("a"))
+    ledger.close()
+    assert content(tmp_path) == written == json.loads(json.dumps(ledger.content))
+
+
+def test_statistics_of_the_runs_of_a_method():
+    runs = tuple(run(seed, cost) for seed, cost in enumerate([4.0, 100.0, 2.0, -50.0]))
+    entry = home_document(home(methods=(MethodResults("HA-1", runs), MethodResults("Rule", (run(),)))))
+    learned, rule = entry["methods"]["HA-1"], entry["methods"]["Rule"]
+    assert learned["interquartile_mean"]["energy_cost"] == 3.0
+    assert learned["interquartile_mean"]["share_of_savings"] is None
+    assert (learned["worst_seed"], rule["worst_seed"]) == (1, None)
+    assert (learned["interval_kind"], rule["interval_kind"]) == ("student", None)
+    assert [one["regret"] for one in learned["runs"]] == [3.5, 99.5, 1.5, -50.5]
+
+
+def test_a_missing_regret_leaves_no_worst_seed():
+    broken = replace(run(1).metrics, regret=math.nan)
+    runs = (run(0), replace(run(1), metrics=broken))
+    entry = home_document(home(methods=(MethodResults("HA-1", runs),)))["methods"]["HA-1"]
+    assert entry["worst_seed"] is entry["mean"]["regret"] is None
+
+
+def test_regret_and_pareto_stand_in_the_file():
+    results = replace(
+        home(),
+        regret=(MethodRegret("HA-1", 3.0, 2.0, -0.5, 1.5),),
+        pareto=(ParetoPoint("PPO", "beta_T", 0.1, 30.0, math.nan, 3),),
+    )
+    entry = home_document(results)
+    split = {"total": 3.0, "future": 2.0, "thermal_model": -0.5, "policy": 1.5}
+    assert entry["regret"] == {"HA-1": split}
+    assert entry["pareto"] == [
+        {
+            "series": "PPO",
+            "parameter": "beta_T",
+            "value": 0.1,
+            "energy_cost": 30.0,
+            "mean_temperature_deviation": None,
+            "runs": 3,
+        }
+    ]
+
+
 def test_part_of():
     assert is_part_of({"a": {"b": 1}}, {"a": {"b": 1, "c": 2}, "d": 3})
     assert is_part_of({"a": []}, {"a": [1]})
     assert not is_part_of({"a": 1}, {"a": 2})
     assert not is_part_of({"a": 1}, None)
     assert not is_part_of({"a": [1]}, {"a": [1, 2]})
+    assert is_part_of({"a": [{"b": 1}]}, {"a": [{"b": 2}, {"b": 1, "c": 3}]})
+    assert not is_part_of({"a": [{"b": 1}]}, {"a": [{"b": 2}, {"c": 1}]})

@@ -24,6 +24,7 @@ METRICS = {
     "total_temperature_deviation",
     "gap_to_optimum",
     "share_of_savings",
+    "regret",
     "seconds_to_train",
 }
 TRAINING_STAGES = ["HA-1", "AIRL-1-days"]
@@ -60,7 +61,7 @@ def test_the_results_file_has_the_schema_of_the_documents(finished):
         (2, "AIRL"),
     ]
     for method in (*home["methods"].values(), *home["data_efficiency"]):
-        assert set(method["mean"]) == set(method["interval"]) == METRICS
+        assert set(method["mean"]) == set(method["interval"]) == set(method["interquartile_mean"]) == METRICS
         for one in method["runs"]:
             assert set(one) == METRICS | {"seed", "schedule", "curve"}
 

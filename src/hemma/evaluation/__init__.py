@@ -1,6 +1,8 @@
 """Replay a controller on a home, its metrics at equal comfort, and statistics over seeds."""
 
-from hemma.evaluation.metrics import EqualComfort, Metrics, measure
+from hemma.evaluation.improvement import Improvement, Pair, Sample, probability_of_improvement
+from hemma.evaluation.metrics import NEGLIGIBLE, EqualComfort, Metrics, measure
+from hemma.evaluation.regret import RegretSplit, regret, split_regret
 from hemma.evaluation.replay import Outcome, evaluate, evaluate_stacked
 from hemma.evaluation.schedules import (
     EXOGENOUS_COLUMNS,
@@ -10,22 +12,42 @@ from hemma.evaluation.schedules import (
     write_exogenous,
     write_schedule,
 )
-from hemma.evaluation.statistics import Interval, Summary, summarise
+from hemma.evaluation.statistics import (
+    Interval,
+    IntervalKind,
+    Summary,
+    interquartile_mean,
+    interval_kind,
+    summarise,
+    summarise_homes,
+)
 
 __all__ = [
     "EXOGENOUS_COLUMNS",
+    "NEGLIGIBLE",
     "SCHEDULE_COLUMNS",
     "EqualComfort",
+    "Improvement",
     "Interval",
+    "IntervalKind",
     "Metrics",
     "Outcome",
+    "Pair",
+    "RegretSplit",
+    "Sample",
     "SavedSchedule",
     "Summary",
     "evaluate",
     "evaluate_stacked",
+    "interquartile_mean",
+    "interval_kind",
     "measure",
+    "probability_of_improvement",
     "read_schedule",
+    "regret",
+    "split_regret",
     "summarise",
+    "summarise_homes",
     "write_exogenous",
     "write_schedule",
 ]

@@ -4,16 +4,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from hemma.experiment.document import document, home_document, read_document, write_document
 from hemma.experiment.progress import Progress
-from hemma.experiment.results import (
-    RESULTS_FILE,
-    Head,
-    HomeResults,
-    document,
-    home_document,
-    read_document,
-    write_document,
-)
+from hemma.experiment.results import RESULTS_FILE, Head, HomeResults
 
 
 @dataclass
@@ -23,7 +16,8 @@ class Ledger:
     folder: Path
     head: Head
     homes: dict[str, Any] = field(default_factory=dict)
-    """Entries of the file, also those of earlier runs with the same settings."""
+    """Entries of the file, also those of earlier runs with the same settings. What follows from the runs in
+    them is added when the file is written."""
     stale: set[str] = field(default_factory=set)
     """Files that an earlier results file named."""
 
@@ -68,11 +62,11 @@ def open_ledger(folder: Path, head: Head, progress: Progress) -> Ledger:
 
 
 def is_part_of(part: Any, whole: Any) -> bool:
-    """Whether all that ``part`` says stands in ``whole`` as well."""
+    """Whether all that ``part`` says stands in ``whole`` as well; of a list of records each one does."""
     if isinstance(part, dict) and isinstance(whole, dict):
         return all(name in whole and is_part_of(value, whole[name]) for name, value in part.items())
-    if isinstance(part, list) and isinstance(whole, list) and not part:
-        return True
+    if isinstance(part, list) and isinstance(whole, list) and all(isinstance(item, dict) for item in part):
+        return all(any(is_part_of(item, other) for other in whole) for item in part)
     return part == whole
 
 
