@@ -27,6 +27,19 @@ def written(tmp_path_factory) -> Written:
 
 
 @pytest.fixture
+def undrawn(monkeypatch) -> None:
+    """Figures are made but not rendered, which is what takes the time: for tests of the page."""
+
+    def save(figure, folder, name) -> bytes:
+        folder.mkdir(exist_ok=True)
+        for ending in ("png", "svg"):
+            (folder / f"{name}.{ending}").write_bytes(b"<svg/>")
+        return b"<svg/>"
+
+    monkeypatch.setattr("hemma.report.figures.save", save)
+
+
+@pytest.fixture
 def small(tmp_path) -> tuple[Path, dict]:
     """A folder that a test may break, without a report."""
     return tmp_path, write_results(tmp_path, homes=("home",), seeds=2, methods=("HA-1", "Rule", "optimum"))

@@ -6,6 +6,7 @@ from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import numpy as np
+from synthetic_findings import HINDSIGHT, aggregate, improvements, interquartile_mean, pareto, regret_split
 
 SLOTS = 744
 ZONE = timezone(timedelta(hours=-6))
@@ -17,6 +18,7 @@ METRICS = (
     "total_temperature_deviation",
     "gap_to_optimum",
     "share_of_savings",
+    "regret",
     "seconds_to_train",
 )
 COSTS = {
@@ -24,6 +26,7 @@ COSTS = {
     "HA-2": 30.9,
     "GAIL": 32.6,
     "MaxEnt IRL": 36.8,
+    "MaxEnt IRL neural": 34.1,
     "BC": 33.9,
     "PPO": 34.7,
     "DDPG": 38.2,
@@ -35,14 +38,16 @@ COSTS = {
     "no battery": 43.1,
     "MPC perfect": 28.9,
     "HMPC": 28.7,
+    "HMPC joint": 28.5,
     "DNLP": 28.6,
     "optimum": 28.4,
 }
 DEVIATIONS = {
-    "HA-1": 0.004, "HA-2": 0.002, "GAIL": 0.02, "MaxEnt IRL": 0.11, "BC": 0.05, "PPO": 0.08, "DDPG": 0.4,
+    "HA-1": 0.004, "HA-2": 0.002, "GAIL": 0.02, "MaxEnt IRL": 0.11,
+    "MaxEnt IRL neural": 0.03, "BC": 0.05, "PPO": 0.08, "DDPG": 0.4,
     "Rule": 0.47,
 }  # fmt: skip
-TRAINED = {"HA-1", "HA-2", "GAIL", "MaxEnt IRL", "BC", "PPO", "DDPG"}
+TRAINED = {"HA-1", "HA-2", "GAIL", "MaxEnt IRL", "MaxEnt IRL neural", "BC", "PPO", "DDPG"}
 TEST_START = datetime(2021, 8, 1, tzinfo=ZONE)
 
 
@@ -57,8 +62,11 @@ def write_results(
         "schema": 1,
         "hemma": "0.1.0",
         "settings": {"seeds": list(range(seeds)), "airl": {"rounds": 1800, "discount": 0.99}, "tariff": None},
+        "interval_kind": "percentile bootstrap",
         "homes": {name: _home(folder, name, seeds, methods) for name in homes},
     }
+    if len(homes) > 1:
+        content["aggregate"] = aggregate(content["homes"])
     save_results(folder, content)
     return content
 
@@ -96,9 +104,12 @@ def _home(folder: Path, name: str, seeds: int, methods: tuple[str, ...]) -> dict
                 "method": method,
                 **_summary([_run(base + 9 / days, 0.3 / days, seed) for seed in range(3)]),
             }
-            for days in (3, 7, 15, 30, 60)
+            for days in (1, 3, 7, 15, 30, 60)
             for method, base in (("AIRL", 30.8), ("GAIL", 31.9), ("BC", 33.0))
         ],
+        "probability_of_improvement": improvements({name: found[name] for name in found if name in TRAINED}),
+        "regret": {name: regret_split(found[name]) for name in found if name not in HINDSIGHT},
+        "pareto": pareto(),
     }  # fmt: skip
 
 
@@ -132,6 +143,7 @@ def _run(cost: float, deviation: float, seed: int | None) -> dict:
         "total_temperature_deviation": SLOTS * deviation,
         "gap_to_optimum": cost / 28.4 - 1,
         "share_of_savings": (43.1 - cost) / (43.1 - 28.4),
+        "regret": cost - 28.4,
         "seconds_to_train": 74.0 + noise if seed is not None else None,
         "schedule": None,
         "curve": None,
@@ -148,7 +160,12 @@ def _summary(runs: list[dict]) -> dict:
             2.78 * float(np.std(values, ddof=1)) / len(values) ** 0.5 if known and len(values) > 1 else None
         )
         interval[metric] = [mean[metric] - half, mean[metric] + half] if half is not None else None
-    return {"runs": runs, "mean": mean, "interval": interval}
+    summary = {"runs": runs, "mean": mean, "interval": interval}
+    if len(runs) < 2:
+        return summary
+    middle = {metric: interquartile_mean([run[metric] for run in runs]) for metric in METRICS}
+    worst = max(runs, key=lambda run: run["regret"])["seed"]
+    return summary | {"interquartile_mean": middle, "worst_seed": worst}
 
 
 def _exogenous(generator: np.random.Generator) -> dict:
@@ -197,7 +214,7 @@ def _curve(method: str, seed: int) -> dict:
     rows = np.arange(0, 1800, 20)
     generator = np.random.default_rng(seed + len(method))
     fall = np.exp(-rows / (150 + 60 * len(method)))
-    curve = {"iteration": rows, "steps": rows * 3072}
+    curve = {"iteration": rows}
     if method in ("HA-1", "HA-2", "GAIL"):
         curve |= {
             "discriminator_loss": 0.69 - 0.4 * fall + generator.normal(0, 0.01, len(rows)),
@@ -205,11 +222,16 @@ def _curve(method: str, seed: int) -> dict:
             "agent_accuracy": 0.53 + 0.4 * fall + generator.normal(0, 0.02, len(rows)),
             "learned_reward": -2 * fall + generator.normal(0, 0.05, len(rows)),
         }
+    if method == "DDPG":
+        curve |= {"critic_loss": 0.4 * fall + 0.1}
     if method not in ("BC", "DDPG"):
         curve |= {"policy_kl": 0.01 * fall + 0.002, "policy_entropy": 1.2 + 0.5 * fall}
     start = 1.6 if method == "PPO" else 1.9
     return curve | {
-        "train_energy_cost": 0.95 + start * fall * 0.4 + generator.normal(0, 0.01, len(rows)),
+        "train_energy_cost": 0.95
+        + 0.02 * len(method)
+        + start * fall * 0.4
+        + generator.normal(0, 0.01, len(rows)),
         "train_temperature_deviation": 8 * fall + np.abs(generator.normal(0, 0.1, len(rows))),
     }
 

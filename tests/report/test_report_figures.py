@@ -13,16 +13,17 @@ from hemma.report import write_report
 from hemma.report.canvas import drawing_style, new_figure, save
 from hemma.report.figures import HomeSeries, read_series
 from hemma.report.methods import GROUPS, look_of
+from hemma.report.panels_curves import thinned
 from hemma.report.panels_demonstrations import draw_cost_by_length, draw_deviation_by_length
 from hemma.report.panels_methods import draw_costs, draw_deviations
-from hemma.report.panels_model import thinned
 from hemma.report.panels_time import draw_battery_level, draw_indoor_temperature
 from hemma.report.results import HomeResults, load_results
 from hemma.report.series import SeriesReader
 
 NAMES = (
     "results", "cost-by-demonstrations", "deviation-by-demonstrations", "energy-cost",
-    "temperature-deviation", "indoor-temperature", "battery-level", "powers-week", "training-curves",
+    "temperature-deviation", "indoor-temperature", "battery-level", "powers-week", "traces-week",
+    "cost-and-comfort", "regret", "probability-of-improvement", "training-curves", "training-diagnostics",
     "free-run",
 )  # fmt: skip
 
@@ -85,7 +86,7 @@ def test_panel_a_shows_the_means_by_length_and_the_references(written, home):
     for method in ("AIRL", "GAIL", "BC"):
         expected = [entry["mean"]["energy_cost"] for entry in entries if entry["method"] == method]
         assert _line(axes, method).get_ydata() == pytest.approx(expected)
-        assert _line(axes, method).get_xdata() == pytest.approx([3, 7, 15, 30, 60], rel=0.1)
+        assert _line(axes, method).get_xdata() == pytest.approx([1, 3, 7, 15, 30, 60], rel=0.1)
     assert set(_line(axes, "optimum").get_ydata()) == {28.4}
     assert set(_line(axes, "Rule").get_ydata()) == {44.6}
 
@@ -180,6 +181,7 @@ def test_thinning_keeps_the_mean_of_what_it_joins(rows):
     assert short[-1] == pytest.approx(values[(len(short) - 1) * size :].mean())
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_several_homes_have_figures_each_under_its_own_safe_name(tmp_path):
     content = write_results(tmp_path, homes=("a b", "a_b"), seeds=1, methods=("Rule",))
     for entry in content["homes"].values():

@@ -119,8 +119,9 @@ def test_the_headline_is_computed(written, page):
 
 def test_order_of_the_sections(page):
     wanted = [
-        "Results on austin2021-1", "The six panels", "How to read it", "Training curves", "Identification",
-        "Data, attribution and limits", "Settings, and how to get this again",
+        "Results on austin2021-1", "The six panels", "A week of every method", "Cost against comfort",
+        "Where the regret comes from", "How sure the differences are", "How to read it", "Learning curves",
+        "Identification", "Data, attribution and limits", "Settings, and how to get this again",
     ]  # fmt: skip
     places = [page.texts.index(title) for title in wanted]
     assert places == sorted(places)
@@ -140,6 +141,34 @@ def test_identification_errors_are_told(page):
         assert told in page.texts
 
 
+def test_the_parts_of_the_regret_stand_in_a_table(written, page):
+    for split in written.content["homes"]["austin2021-1"]["regret"].values():
+        for amount in split.values():
+            assert f"{'−' if amount < 0 else ''}${abs(amount):.2f}" in page.texts
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_kind_of_interval_is_told_and_older_folders_used_students_t(written, page, small):
+    assert "95 % interval of that mean (percentile bootstrap)" in page.text
+    folder, content = small
+    del content["interval_kind"]
+    save_results(folder, content)
+    assert "95 % interval of that mean (Student's t)" in _Page(write_report(folder).read_text()).text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_an_older_folder_says_what_it_does_not_have(small):
+    folder, content = small
+    home = content["homes"]["home"]
+    for key in ("probability_of_improvement", "regret", "pareto"):
+        del home[key]
+    save_results(folder, content)
+    page = _Page(write_report(folder).read_text(encoding="utf-8"))
+    assert "No sweep of cost against comfort in this folder." in page.texts
+    assert "The regret is not split in this folder." in page.texts
+    assert "No two learned methods are compared run by run in this folder." in page.texts
+
+
 def test_hostile_names_are_text(tmp_path):
     content = write_results(tmp_path, homes=("home",), seeds=1, methods=("Rule",))
     home = content["homes"].pop("home")
@@ -148,6 +177,9 @@ def test_hostile_names_are_text(tmp_path):
     run = home["methods"]["Rule"]["runs"][0]
     run["schedule"] = run["schedule"].replace("/home/", "/<b>home/")
     home["methods"] = {EVIL: home["methods"]["Rule"], r"$\frac{$": home["methods"]["Rule"]}
+    home["regret"] = {EVIL: {"total": 1.0, "future": 2.0, "thermal_model": 0.0, "policy": -1.0}}
+    point = {"value": 1.0, "energy_cost": 1.0, "mean_temperature_deviation": 0.0}
+    home["pareto"] = [{"series": EVIL, "parameter": EVIL, **point}]
     home |= {"source": EVIL, "notes": [EVIL], "traces_sha256": EVIL, "currency": EVIL, "data_efficiency": []}
     home["identification"]["rmse_c"] = {EVIL: 0.1}
     content |= {"hemma": EVIL, "command": EVIL, "settings": {EVIL: {EVIL: EVIL}}, "homes": {"<b>home": home}}
@@ -165,6 +197,7 @@ def test_the_dash_is_explained(page):
     assert "En dash (–)" in page.texts
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_partial_folder_still_gives_a_report(small):
     folder, content = small
     home = content["homes"]["home"]

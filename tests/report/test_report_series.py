@@ -42,9 +42,15 @@ def test_only_the_iteration_is_compulsory_in_a_curve(tmp_path):
     (tmp_path / "curve.csv").write_text("iteration,learned_reward\n0,1.5\n10,2.5\n")
     curve = SeriesReader(tmp_path).curve("curve.csv")
     assert curve.iteration.tolist() == [0, 10]
-    assert curve.learned_reward is not None
-    assert curve.learned_reward.tolist() == [1.5, 2.5]
-    assert curve.discriminator_loss is None
+    assert curve.quantities.keys() == {"learned_reward"}
+    assert curve.quantities["learned_reward"].tolist() == [1.5, 2.5]
+    assert curve.share.tolist() == [0.0, 1.0]
+
+
+def test_a_curve_without_rows_is_refused(tmp_path):
+    (tmp_path / "curve.csv").write_text("iteration,learned_reward\n")
+    with pytest.raises(HemmaError, match=r"curve\.csv: expected a row a chunk of iterations, found none"):
+        SeriesReader(tmp_path).curve("curve.csv")
 
 
 @pytest.mark.parametrize(

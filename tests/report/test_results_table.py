@@ -52,11 +52,33 @@ def test_deterministic_methods_have_no_seed_no_interval_and_no_worst_seed(writte
 
 def test_the_worst_seed_is_the_farthest_from_the_optimum_and_not_the_dearest(small):
     folder, content = small
-    runs = content["homes"]["home"]["methods"]["HA-1"]["runs"]
-    runs[0] |= {"energy_cost": 20.0, "gap_to_optimum": 0.9}
-    runs[1] |= {"energy_cost": 30.0, "gap_to_optimum": 0.1}
+    method = content["homes"]["home"]["methods"]["HA-1"]
+    del method["worst_seed"]
+    method["runs"][0] |= {"energy_cost": 20.0, "gap_to_optimum": 0.9}
+    method["runs"][1] |= {"energy_cost": 30.0, "gap_to_optimum": 0.1}
     save_results(folder, content)
     assert str(results_table(folder)[0].worst_seed) == "$20.00 (gap 90.0\u00a0%)"
+
+
+def test_the_worst_seed_that_the_folder_names_is_believed(small):
+    folder, content = small
+    method = content["homes"]["home"]["methods"]["HA-1"]
+    method["worst_seed"] = 1
+    method["runs"][0] |= {"energy_cost": 20.0, "gap_to_optimum": 0.9}
+    method["runs"][1] |= {"energy_cost": 30.0, "gap_to_optimum": 0.1}
+    save_results(folder, content)
+    assert str(results_table(folder)[0].worst_seed) == "$30.00 (gap 10.0\u00a0%)"
+
+
+def test_the_interquartile_mean_stands_with_its_share_and_is_a_dash_in_older_folders(small):
+    folder, content = small
+    method = content["homes"]["home"]["methods"]["HA-1"]
+    method["interquartile_mean"] |= {"energy_cost": 31.0, "share_of_savings": 0.8}
+    save_results(folder, content)
+    assert str(results_table(folder)[0].interquartile_mean) == "$31.00 (share 80.0\u00a0%)"
+    del method["interquartile_mean"]
+    save_results(folder, content)
+    assert str(results_table(folder)[0].interquartile_mean) == "–"
 
 
 @pytest.mark.parametrize("undefined", [None, float("nan"), float("inf")])

@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from jaxtyping import Shaped
 from matplotlib.axes import Axes
 from matplotlib.dates import HourLocator, num2date
 from matplotlib.figure import Figure
@@ -118,14 +119,19 @@ def legend_above(axes: Axes, columns: int) -> None:
 def days_below(axes: Axes, first: np.datetime64, last: np.datetime64) -> None:
     """A local time axis from ``first`` to ``last`` with at most about eight named days."""
     days = float((last - first) / np.timedelta64(1, "D"))
-    day = np.timedelta64(1, "D")
-    midnight = first.astype("datetime64[D]")
-    midnights = np.arange(midnight if midnight >= first else midnight + day, last + day, day)
-    axes.set_xticks(midnights[midnights <= last][:: max(1, round(days / 7))])
+    axes.set_xticks(midnights(first, last)[:: max(1, round(days / 7))])
     axes.set_xlim(first, last)  # pyright: ignore[reportArgumentType]
     if days <= 8:
         axes.xaxis.set_minor_locator(HourLocator(byhour=(6, 12, 18)))
     axes.xaxis.set_major_formatter(FuncFormatter(_day_name))
+
+
+def midnights(first: np.datetime64, last: np.datetime64) -> Shaped[np.ndarray, "days"]:
+    """All midnights from ``first`` to ``last``."""
+    day = np.timedelta64(1, "D")
+    midnight = first.astype("datetime64[D]")
+    every = np.arange(midnight if midnight >= first else midnight + day, last + day, day)
+    return every[every <= last]
 
 
 def say_nothing_to_show(axes: Axes, reason: str) -> None:

@@ -1,12 +1,13 @@
 """What is said with each figure: its file name, a title, a text for those who cannot see it, a caption."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hemma.report.methods import in_order
 from hemma.report.numbers import degrees, money, plain
 from hemma.report.panels_demonstrations import demonstration_lengths
-from hemma.report.panels_time import Week
 from hemma.report.results import HomeResults
+from hemma.report.week import Week
 
 
 @dataclass(frozen=True)
@@ -20,43 +21,47 @@ class Words:
     caption: str
 
 
-@dataclass(frozen=True)
-class HomeWords:
-    """The words of all figures of a home."""
-
-    panels: tuple[Words, ...]
-    powers: Words
-    training: Words
-    free_run: Words
+def words_of_panels(home: HomeResults, week: Week) -> tuple[Words, ...]:
+    """The words of the six panels (a) to (f), with a home's numbers in the alternative texts."""
+    return (*_by_length(home), *_by_method(home), *_over_time(home, week))
 
 
-def words_of(home: HomeResults, week: Week) -> HomeWords:
-    """The words for a home's figures, with its numbers in the alternative texts."""
-    return HomeWords(
-        panels=(*_by_length(home), *_by_method(home), *_over_time(home, week)),
-        powers=Words(
-            "powers-week",
-            "PV generation, load and grid power",
-            f"PV generation and load, and the grid power of {_names(week)}, hour by hour for a week.",
-            "Above: what the home cannot decide. Below: what each controller makes of it at the meter. "
-            "The grey area is the buying price.",
-        ),
-        training=Words(
-            "training-curves",
-            "Training curves",
-            "Costs, losses and accuracies over the iterations of training, one line a seed.",
-            "One thin line is one seed. Energy cost and deviation are those of the mean action on the "
-            "training days, never on the test period. Recognised transitions near one half mean that the "
-            "discriminator can no longer tell agent from expert. Long curves are drawn as means of "
-            "neighbouring iterations.",
-        ),
-        free_run=Words(
-            "free-run",
-            "Free run of the identified network",
-            "Measured and predicted indoor temperature for the first days, and the error over the period.",
-            "The network is given the first temperature only and then runs on its own predictions.",
-        ),
+def words_of_powers(week: Week) -> Words:
+    """The words of the week's powers."""
+    return Words(
+        "powers-week",
+        "PV generation, load and grid power",
+        f"PV generation and load, and the grid power of {listed(week.selected)}, slot by slot for "
+        f"{plain(round(week.days, 1))} days.",
+        "Above: what the home cannot decide. Below: what each controller makes of it at the meter. "
+        "The grey area is the buying price.",
     )
+
+
+def words_of_traces(home: HomeResults, week: Week) -> Words:
+    """The words of every method's week."""
+    low, high = home.comfort_c
+    ranges = "; ".join(
+        f"{name} {plain(round(float(schedule.indoor_temperature.min()), 1))} to "
+        f"{plain(round(float(schedule.indoor_temperature.max()), 1))} °C, battery "
+        f"{plain(round(float(schedule.battery_energy.min()), 1))} to "
+        f"{plain(round(float(schedule.battery_energy.max()), 1))} kWh"
+        for name, schedule in week.schedules.items()
+    )
+    return Words(
+        "traces-week",
+        f"What every method does in week {week.number} of the test period",
+        f"Ranges of indoor temperature and battery energy of each method in the week: {ranges}.",
+        f"Of each method, above: indoor temperature, with the comfort band from {plain(low)} to "
+        f"{plain(high)} °C; below: battery energy, with the buying price in grey. All panels share their "
+        "scales; of several seeds the one of median cost is shown.",
+    )
+
+
+def listed(names: Iterable[str]) -> str:
+    """``A, B and C``."""
+    *most, last = list(names) or ["no method"]
+    return f"{', '.join(most)} and {last}" if most else last
 
 
 def _by_length(home: HomeResults) -> tuple[Words, Words]:
@@ -72,7 +77,9 @@ def _by_length(home: HomeResults) -> tuple[Words, Words]:
             "cost-by-demonstrations",
             "(a) Energy cost against demonstration length",
             f"Energy cost by days of demonstrations: {costs or 'no such runs'}.",
-            "What more days of demonstrations bring. Line: mean; whisker: 95 % interval; dot: one seed.",
+            "What more days of demonstrations bring. Line: mean; whisker: 95 % interval; dot: one seed. "
+            "Lines from edge to edge are methods that were not trained on several lengths; one so far off "
+            "that it would flatten the rest is only named.",
         ),
         Words(
             "deviation-by-demonstrations",
@@ -108,26 +115,22 @@ def _by_method(home: HomeResults) -> tuple[Words, Words]:
 
 def _over_time(home: HomeResults, week: Week) -> tuple[Words, Words]:
     low, high = home.comfort_c
-    days = plain(round(week.slots * home.slot_length_h / 24, 1))
+    days = plain(round(week.days, 1))
+    names = listed(week.selected)
     return (
         Words(
             "indoor-temperature",
             "(e) Indoor temperature",
-            f"Indoor temperature of {_names(week)} over {days} days, with the comfort band from {plain(low)} "
+            f"Indoor temperature of {names} over {days} days, with the comfort band from {plain(low)} "
             f"to {plain(high)} °C and the buying price.",
-            f"The first {days} days of the test period; of several seeds the one of median cost. "
+            f"Week {week.number} of the test period; of several seeds the one of median cost. "
             "Staying near the edge of the band needs the least energy.",
         ),
         Words(
             "battery-level",
             "(f) Battery level",
-            f"Battery energy of {_names(week)} over {days} days, with the buying price.",
+            f"Battery energy of {names} over {days} days, with the buying price.",
             "Good control fills the battery where the grey price is low and empties it where it is high. "
             "Batteries that rest are left out.",
         ),
     )
-
-
-def _names(week: Week) -> str:
-    *most, last = week.schedules or ["no method"]
-    return f"{', '.join(most)} and {last}" if most else last

@@ -4,7 +4,7 @@ from hemma.report.methods import MEANINGS, in_order
 from hemma.report.numbers import DASH
 from hemma.report.results import HomeResults, Results
 
-METRIC_MEANINGS = (
+_METRICS = (
     (
         "Energy cost",
         "X1 + X2 summed over the test period: X1 is what the energy bought costs minus what the energy sold "
@@ -34,17 +34,30 @@ METRIC_MEANINGS = (
         "better than having no battery. Unlike the gap it keeps its meaning where the optimum is near zero.",
     ),
     (
-        "Seeds and intervals",
-        "A method that learns is trained anew with several random seeds. The number is the mean; in brackets "
-        "stands the 95 % interval of that mean (Student's t). Methods without randomness run once and have "
-        "no interval. The worst seed is the one farthest from the optimum at equal comfort.",
+        "Regret and its parts",
+        "cost − optimum(D) in money. Not knowing the future: the regret of a planner with the best causal "
+        "forecast and the true building. Identified thermal model: what that planner loses by planning "
+        "through the identified network. Policy: the rest, by which a method decides worse than that "
+        "planner. A part below zero saves. The policy part of a planner's own row is zero.",
     ),
     (
-        f"En dash ({DASH})",
-        "No such number: a method without training or without seeds, the worst of a single run, a gap to an "
-        "optimum of zero, a share of savings where a battery can save nothing, or a result that is not in "
-        "the folder.",
+        "Interquartile mean, worst seed",
+        "The interquartile mean leaves out the best and the worst quarter of the runs, so that one run gone "
+        "astray does not move it. The worst seed is the run farthest from the optimum at equal comfort: what "
+        "an owner with bad luck gets.",
     ),
+    (
+        "Probability of improvement",
+        "How probably a run of one method, drawn at random, has a lower regret than a run of another; ties "
+        "count half. 0.5 means no difference.",
+    ),
+)
+
+_DASH = (
+    f"En dash ({DASH})",
+    "No such number: a method without training or without seeds, the worst of a single run, a gap to an "
+    "optimum of zero, a share of savings where a battery can save nothing, or a result that is not in "
+    "the folder.",
 )
 
 LIMITS = (
@@ -52,6 +65,25 @@ LIMITS = (
     "One test period, one climate, one tariff: other seasons and prices are not measured here.",
     "The intervals cover the randomness of training alone, not that of weather, prices or homes.",
 )
+
+
+def metric_meanings(results: Results) -> list[tuple[str, str]]:
+    """What each number means, with the kind of interval that these results have."""
+    return [*_METRICS, ("Seeds and intervals", _seeds_and_intervals(results)), _DASH]
+
+
+def _seeds_and_intervals(results: Results) -> str:
+    over_homes = (
+        " Over several homes the runs of every home count alike, and the intervals cover the drawing of "
+        "seeds on these homes, not that of other homes."
+        if results.aggregate is not None
+        else ""
+    )
+    return (
+        "A method that learns is trained anew with several random seeds. The number is the mean; in brackets "
+        f"stands the 95 % interval of that mean ({results.interval_kind}). Methods without randomness "
+        f"run once and have no interval.{over_homes}"
+    )
 
 
 def method_meanings(results: Results) -> list[tuple[str, str]]:

@@ -1,32 +1,35 @@
-"""Every figure of a home: the six panels of the paper's results figure together and apart, and the rest."""
+"""Every figure of a results folder: drawn, written to the disk, and handed on with its words."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hemma.report.canvas import Picture, drawing_style, new_figure, save
-from hemma.report.captions import Words, words_of
-from hemma.report.panels_demonstrations import draw_cost_by_length, draw_deviation_by_length
-from hemma.report.panels_methods import draw_costs, draw_deviations
-from hemma.report.panels_model import free_run_figure, read_curves, training_figure
-from hemma.report.panels_time import (
-    SHOWN_DAYS,
-    Week,
-    draw_battery_level,
-    draw_generation,
-    draw_grid_power,
-    draw_indoor_temperature,
-    read_week,
+from hemma.report.canvas import Picture, drawing_style, save
+from hemma.report.captions import Words, words_of_panels, words_of_powers, words_of_traces
+from hemma.report.captions_comparisons import (
+    words_of_diagnostics,
+    words_of_free_run,
+    words_of_homes,
+    words_of_improvement,
+    words_of_learning,
+    words_of_pareto,
+    words_of_regret,
 )
+from hemma.report.panels_curves import Curves, learning_figure, read_curves
+from hemma.report.panels_diagnostics import diagnostics_figure, diagnostics_of
+from hemma.report.panels_homes import homes_figure, shares_by_home
+from hemma.report.panels_improvement import comparison_of, improvement_figure
+from hemma.report.panels_model import free_run_figure
+from hemma.report.panels_pareto import pareto_figure, standings, sweeps_of
+from hemma.report.panels_regret import regret_figure
+from hemma.report.panels_traces import traces_figure
 from hemma.report.results import HomeResults, Results
-from hemma.report.series import FreeRun, SeriesReader, TrainingCurve
-
-PANEL_WIDTH, FULL_WIDTH = 5.4, 9.2
-"""Widths [inch] of half and whole figures."""
+from hemma.report.series import FreeRun, SeriesReader
+from hemma.report.six_panels import combined_figure, powers_figure, separate_panels
+from hemma.report.week import WEEK_DAYS, Week, read_week
 
 
 @dataclass(frozen=True)
@@ -34,19 +37,35 @@ class HomeSeries:
     """All series of a home that are drawn."""
 
     week: Week
-    curves: dict[str, list[TrainingCurve]]
+    curves: Curves
     free_run: FreeRun | None
 
 
 @dataclass(frozen=True)
 class HomePictures:
-    """The figures of a home as they stand in the report."""
+    """The figures of a home as they stand in the report; None where the folder has nothing to draw."""
 
     panels: tuple[Picture, ...]
     """The six panels (a) to (f)."""
     powers: Picture
-    training: Picture | None
+    traces: Picture | None
+    pareto: Picture | None
+    regret: Picture | None
+    improvement: Picture | None
+    learning: Picture | None
+    diagnostics: Picture | None
     free_run: Picture | None
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """All figures of the report."""
+
+    homes: dict[str, HomePictures]
+    shares: Picture | None
+    """Share of savings over homes; None for one home."""
+    improvement: Picture | None
+    """Probabilities of improvement over homes."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +81,7 @@ class Shelf:
         return Picture(svg=svg, title=said.title, alternative=said.alternative, caption=said.caption)
 
 
-def read_series(reader: SeriesReader, name: str, home: HomeResults) -> HomeSeries:
+def read_series(reader: SeriesReader, name: str, home: HomeResults, week: int = 1) -> HomeSeries:
     """Read all series of a home; every file that ``results.json`` names must exist, drawn or not."""
     methods = [*home.methods.values(), *home.data_efficiency]
     for run in (run for method in methods for run in method.runs):
@@ -70,93 +89,98 @@ def read_series(reader: SeriesReader, name: str, home: HomeResults) -> HomeSerie
             reader.located(path)
     free_run = home.identification.free_run if home.identification else None
     return HomeSeries(
-        week=read_week(reader, name, home),
+        week=read_week(reader, name, home, week),
         curves=read_curves(reader, home),
         free_run=reader.free_run(free_run) if free_run else None,
     )
 
 
-def draw_all(folder: Path, results: Results) -> dict[str, HomePictures]:
+def draw_all(folder: Path, results: Results, week: int = 1) -> Pictures:
     """Write the figures of all homes to ``folder``/figures as PNG and SVG; the pictures by home.
 
-    One home: ``results.*`` (the six panels in one) and each panel under its own name. Several homes: the
-    same with the home's name in front, and ``results.*`` is the combined figure of the first.
+    One home: ``results.*`` (the six panels in one) and each figure under its own name. Several homes: the
+    same with the home's name in front, ``results.*`` is the combined figure of the first, and the figures
+    over homes have no home's name. ``week`` counts the weeks of the test period from 1.
     """
     reader = SeriesReader(folder)
-    series = {name: read_series(reader, name, home) for name, home in results.finished.items()}
+    series = {name: read_series(reader, name, home, week) for name, home in results.finished.items()}
     prefixes = _prefixes(series)
+    figures = folder / "figures"
     with drawing_style():
         first = next(iter(series))
         if prefixes[first]:
-            save(combined_figure(results.homes[first], series[first].week), folder / "figures", "results")
-        return {
-            name: _draw_home(Shelf(folder / "figures", prefixes[name]), home, series[name])
-            for name, home in results.finished.items()
-        }
-
-
-def combined_figure(home: HomeResults, week: Week) -> Figure:
-    """The six panels in one figure, for a README or a paper."""
-    methods_height = _methods_height(home)
-    heights = (3.1, methods_height, 2.6, 2.6)
-    figure = new_figure(FULL_WIDTH, sum(heights))
-    parts = figure.subfigures(3, 1, squeeze=False, height_ratios=(*heights[:2], sum(heights[2:])))
-    upper, middle, lower = parts[:, 0]
-    panels = [*upper.subplots(1, 2), *middle.subplots(1, 2), *lower.subplots(2, 1)]
-    for axes, draw in zip(panels, _six(home, week), strict=True):
-        draw(axes)
-    panels[3].tick_params(labelleft=False)
-    panels[4].set_xlabel("")
-    return figure
-
-
-def _six(home: HomeResults, week: Week) -> tuple[Callable[[Axes], None], ...]:
-    return (
-        lambda axes: draw_cost_by_length(axes, home),
-        lambda axes: draw_deviation_by_length(axes, home),
-        lambda axes: draw_costs(axes, home),
-        lambda axes: draw_deviations(axes, home),
-        lambda axes: draw_indoor_temperature(axes, home, week),
-        lambda axes: draw_battery_level(axes, home, week),
-    )
+            save(combined_figure(results.homes[first], series[first].week), figures, "results")
+        over_homes = Shelf(figures, "homes-")
+        return Pictures(
+            homes={
+                name: _draw_home(Shelf(figures, prefixes[name]), home, series[name])
+                for name, home in results.finished.items()
+            },
+            shares=_shares(over_homes, results),
+            improvement=_improvement_over_homes(over_homes, results),
+        )
 
 
 def _draw_home(shelf: Shelf, home: HomeResults, series: HomeSeries) -> HomePictures:
-    words = words_of(home, series.week)
-    save(combined_figure(home, series.week), shelf.folder, f"{shelf.prefix}results")
-    training = training_figure(home, series.curves) if series.curves else None
-    slots = round(SHOWN_DAYS * 24 / home.slot_length_h)
-    free_run = free_run_figure(series.free_run, slots) if series.free_run else None
+    week, curves = series.week, series.curves
+    save(combined_figure(home, week), shelf.folder, f"{shelf.prefix}results")
+    panels = zip(separate_panels(home, week), words_of_panels(home, week), strict=True)
     return HomePictures(
-        panels=_draw_panels(shelf, home, series.week),
-        powers=shelf.save(_powers_figure(home, series.week), words.powers),
-        training=shelf.save(training, words.training) if training else None,
-        free_run=shelf.save(free_run, words.free_run) if free_run else None,
+        panels=tuple(shelf.save(figure, said) for figure, said in panels),
+        powers=shelf.save(powers_figure(home, week), words_of_powers(week)),
+        traces=shelf.save(traces_figure(home, week), words_of_traces(home, week)) if week.schedules else None,
+        pareto=_pareto(shelf, home),
+        regret=shelf.save(regret_figure(home), words_of_regret(home)) if home.regret else None,
+        improvement=_improvement(shelf, home),
+        learning=_learning(shelf, home, curves),
+        diagnostics=_diagnostics(shelf, curves),
+        free_run=_free_run(shelf, home, series.free_run),
     )
 
 
-def _draw_panels(shelf: Shelf, home: HomeResults, week: Week) -> tuple[Picture, ...]:
-    height = _methods_height(home)
-    sizes = [(PANEL_WIDTH, 3.4)] * 2 + [(PANEL_WIDTH, height)] * 2 + [(FULL_WIDTH, 2.9)] * 2
-    pictures = []
-    for size, draw, said in zip(sizes, _six(home, week), words_of(home, week).panels, strict=True):
-        figure = new_figure(*size)
-        draw(figure.add_subplot())
-        pictures.append(shelf.save(figure, said))
-    return tuple(pictures)
+def _pareto(shelf: Shelf, home: HomeResults) -> Picture | None:
+    has_both = sweeps_of(home) and standings(home)
+    return shelf.save(pareto_figure(home), words_of_pareto(home)) if has_both else None
 
 
-def _powers_figure(home: HomeResults, week: Week) -> Figure:
-    figure = new_figure(FULL_WIDTH, 5.0)
-    above, below = figure.subplots(2, 1)
-    draw_generation(above, home, week)
-    draw_grid_power(below, home, week)
-    above.set_xlabel("")
-    return figure
+def _improvement(shelf: Shelf, home: HomeResults) -> Picture | None:
+    """Between the learned methods: of the others there is one run, which either beats another or does not."""
+    learned = [name for name, method in home.methods.items() if method.is_learned]
+    comparison = comparison_of(home.probability_of_improvement, learned)
+    if not comparison.methods:
+        return None
+    return shelf.save(improvement_figure(comparison), words_of_improvement(comparison, "of this home"))
 
 
-def _methods_height(home: HomeResults) -> float:
-    return 1.15 + 0.2 * max(5, len(home.methods))
+def _learning(shelf: Shelf, home: HomeResults, curves: Curves) -> Picture | None:
+    figure = learning_figure(home, curves)
+    return shelf.save(figure, words_of_learning(home, curves)) if figure else None
+
+
+def _diagnostics(shelf: Shelf, curves: Curves) -> Picture | None:
+    figure = diagnostics_figure(curves)
+    names = [f"{diagnostic.title.lower()}" for diagnostic in diagnostics_of(curves)]
+    return shelf.save(figure, words_of_diagnostics(names)) if figure else None
+
+
+def _free_run(shelf: Shelf, home: HomeResults, run: FreeRun | None) -> Picture | None:
+    slots = round(WEEK_DAYS * 24 / home.slot_length_h)
+    return shelf.save(free_run_figure(run, slots), words_of_free_run()) if run else None
+
+
+def _shares(shelf: Shelf, results: Results) -> Picture | None:
+    has_shares = len(results.finished) > 1 and any(shares_by_home(results).values())
+    return shelf.save(homes_figure(results), words_of_homes(results)) if has_shares else None
+
+
+def _improvement_over_homes(shelf: Shelf, results: Results) -> Picture | None:
+    if results.aggregate is None:
+        return None
+    learned = {n for home in results.finished.values() for n, m in home.methods.items() if m.is_learned}
+    comparison = comparison_of(results.aggregate.probability_of_improvement, learned)
+    if not comparison.methods:
+        return None
+    return shelf.save(improvement_figure(comparison), words_of_improvement(comparison, "on the same home"))
 
 
 def _prefixes(homes: Iterable[str]) -> dict[str, str]:
@@ -166,6 +190,6 @@ def _prefixes(homes: Iterable[str]) -> dict[str, str]:
         return {names[0]: ""}
     safe = [re.sub(r"[^\w.-]+", "_", name).lstrip(".") or "home" for name in names]
     return {
-        name: f"{text}-" if safe.count(text) == 1 else f"{text}-{number}-"
+        name: f"{text}-" if safe.count(text) == 1 and text != "homes" else f"{text}-{number}-"
         for number, (name, text) in enumerate(zip(names, safe, strict=True), start=1)
     }

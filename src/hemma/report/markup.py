@@ -65,5 +65,10 @@ def figure(picture: Picture, style: str = "") -> str:
     )
 
 
+def figure_or(picture: Picture | None, reason: str) -> str:
+    """A figure over the whole width, or a sentence that says why there is none."""
+    return figure(picture, "full") if picture else paragraph(reason, "faint")
+
+
 def _class(style: str) -> str:
     return f' class="{escape(style)}"' if style else ""

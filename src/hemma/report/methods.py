@@ -36,13 +36,14 @@ class Group:
 
 
 GROUPS = (
-    Group("Learned from demonstrations", ("HA-1", "HA-2", "AIRL", "GAIL", "MaxEnt IRL", "BC")),
-    Group("Learned from a hand-written reward", ("PPO", "DDPG")),
     Group(
-        "Not learned",
-        ("MPC forecast", "MPC hourly means", "MPC yesterday", "thresholds", "Rule", "no battery"),
+        "Learned from demonstrations",
+        ("HA-1", "HA-2", "AIRL", "GAIL", "MaxEnt IRL", "MaxEnt IRL neural", "BC"),
     ),
-    Group("Knows the future", ("MPC perfect", "HMPC", "DNLP", "optimum")),
+    Group("Learned from a hand-written reward", ("PPO", "DDPG")),
+    Group("Plans again in every slot", ("MPC forecast", "MPC hourly means", "MPC yesterday")),
+    Group("Fixed rules", ("thresholds", "Rule", "no battery")),
+    Group("Knows the future", ("MPC perfect", "HMPC", "HMPC joint", "DNLP", "optimum")),
 )
 OTHERS = "Others"
 
@@ -52,6 +53,7 @@ _LOOKS = {
     "AIRL": Look(BLUE, "-", "o"),
     "GAIL": Look(GREEN, DASHED, "s"),
     "MaxEnt IRL": Look(GREEN, DOTTED, "v"),
+    "MaxEnt IRL neural": Look(GREEN, MIXED, "d"),
     "BC": Look(PURPLE, MIXED, "^"),
     "PPO": Look(ORANGE, MIXED, "D"),
     "DDPG": Look(ORANGE, DOTTED, "v"),
@@ -64,6 +66,7 @@ _LOOKS = {
     "no battery": Look(VERMILLION, DOTTED, "P"),
     "MPC perfect": Look(GREY, MIXED, "v"),
     "HMPC": Look(BLACK, DASHED, "s"),
+    "HMPC joint": Look(BLACK, "-", "o"),
     "DNLP": Look(BLACK, MIXED, "D"),
     "optimum": Look(BLACK, DOTTED, "*"),
 }
@@ -75,21 +78,29 @@ MEANINGS = {
     "HA-1": "HMPC-assisted adversarial inverse reinforcement learning, the shorter demonstrations",
     "HA-2": "the same method with the longer demonstrations",
     "AIRL": "the method of HA-1 and HA-2 at other demonstration lengths",
-    "GAIL": "generative adversarial imitation of demonstrations, without a reward to keep",
-    "MaxEnt IRL": "maximum-entropy inverse reinforcement learning from demonstrations",
-    "BC": "behavioural cloning: a regression from states to the demonstrated actions",
+    "GAIL": "generative adversarial imitation of the demonstrations, without a reward to keep",
+    "MaxEnt IRL": "maximum-entropy inverse reinforcement learning from demonstrations, a reward linear in "
+    "named features",
+    "MaxEnt IRL neural": "the same with a neural network as the reward",
+    "BC": "behavioural cloning: a regression from states to the demonstrated actions, without any trial",
     "PPO": "reinforcement learning on the hand-written reward −(X1 + X2) − β·X3, on policy",
     "DDPG": "reinforcement learning on the same hand-written reward, off policy",
     "default": "the controller that Hemma uses unless told otherwise",
-    "MPC forecast": "plans again in every slot, with a forecast fitted on the training period",
-    "MPC hourly means": "plans again in every slot, expecting the mean of each hour of the day",
-    "MPC yesterday": "plans again in every slot, expecting yesterday once more",
+    "MPC forecast": "plans battery and HVAC of the next hours together in every slot, does the first slot "
+    "of the plan, measures, and plans again; prices, weather and load ahead come from a forecast fitted on "
+    "the training period, the building is the identified network",
+    "MPC hourly means": "the same planner, expecting the training period's mean at each time of day",
+    "MPC yesterday": "the same planner, expecting the last known value at the same time of day",
     "thresholds": "charges below one price and discharges above another, both fitted on the training period",
     "Rule": "a thermostat with hysteresis; the battery rests",
     "no battery": "holds the temperature at the edge of comfort; there is no battery",
-    "MPC perfect": "plans again in every slot and knows the next hours exactly",
+    "MPC perfect": "the same planner as MPC forecast, told the next hours exactly: what is left is due to "
+    "its horizon and to the identified building",
     "HMPC": "the expert: the two-level optimiser in hindsight, with the identified network as its model",
-    "DNLP": "discontinuous nonlinear programme over the whole period, a local optimum in hindsight",
+    "HMPC joint": "HVAC and battery planned together and exactly in hindsight through the identified "
+    "network, carried out on the real home: what the expert's two levels give away",
+    "DNLP": "the optimum's problem again as a nonlinear programme over the whole period in hindsight, "
+    "solved by an interior-point method; a local optimum, so an independent check of the proven one",
     "optimum": "the proven least cost in hindsight, with the least deviation that is possible",
 }
 
@@ -99,6 +110,15 @@ def in_order(methods: Iterable[str]) -> list[str]:
     known = [name for group in GROUPS for name in group.methods]
     present = list(methods)
     return [name for name in known if name in present] + [name for name in present if name not in known]
+
+
+def grouped(methods: Iterable[str]) -> dict[str, list[str]]:
+    """The methods present by the titles of their groups, all in order; strangers stand under ``OTHERS``."""
+    present = in_order(methods)
+    groups = {group.title: [name for name in group.methods if name in present] for group in GROUPS}
+    known = {name for group in GROUPS for name in group.methods}
+    groups[OTHERS] = [name for name in present if name not in known]
+    return {title: names for title, names in groups.items() if names}
 
 
 def look_of(method: str) -> Look:
@@ -116,5 +136,5 @@ def main_method(methods: Iterable[str]) -> str:
 def shown_over_time(methods: Iterable[str]) -> list[str]:
     """At most four methods whose lines can be told apart in one panel."""
     present = list(methods)
-    wanted = dict.fromkeys((main_method(present), "Rule", "PPO", "optimum"))
+    wanted = dict.fromkeys((*in_order(present)[:1], "Rule", "PPO", "optimum"))
     return in_order(name for name in wanted if name in present)

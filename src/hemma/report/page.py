@@ -4,36 +4,27 @@ from collections.abc import Iterator
 from html import escape
 from typing import Any
 
-from hemma.report.explanations import METRIC_MEANINGS, method_meanings
-from hemma.report.figures import HomePictures
-from hemma.report.headline import headline, range_of_shares, summary_cells
+from hemma.report.explanations import method_meanings, metric_meanings
+from hemma.report.figures import HomePictures, Pictures
+from hemma.report.headline import headline, range_of_shares
 from hemma.report.markup import body, cell, definitions, heading, paragraph, row, table
+from hemma.report.overview import overview_section
 from hemma.report.results import Results
 from hemma.report.sections import background_section, results_section
 from hemma.report.stylesheet import STYLESHEET
 from hemma.report.table import results_table
 
-SUMMARY_HEADINGS = (
-    "Home",
-    "Method",
-    "Energy cost",
-    "Rule",
-    "Perfect information",
-    "Share of savings",
-    "Gap to optimum",
-    "Mean deviation",
-)
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 """What the browser may load for the page: nothing from anywhere."""
 
 
-def report_page(results: Results, pictures: dict[str, HomePictures]) -> str:
+def report_page(results: Results, pictures: Pictures) -> str:
     """The HTML of the report."""
     homes = results.finished
     parts = [
-        *(_home_section(results, name, pictures[name]) for name in homes),
+        *(_home_section(results, name, pictures.homes[name]) for name in homes),
         _reading_section(results),
-        *(background_section(name, home, pictures[name]) for name, home in homes.items()),
+        *(background_section(name, home, pictures.homes[name]) for name, home in homes.items()),
         _settings_section(results),
     ]
     title = _title(results)
@@ -42,7 +33,7 @@ def report_page(results: Results, pictures: dict[str, HomePictures]) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>{escape(title)}</title><style>{STYLESHEET}</style></head><body>"
-        f"<header>{_opening(results, title)}</header><main>{''.join(parts)}</main></body></html>\n"
+        f"<header>{_opening(results, title, pictures)}</header><main>{''.join(parts)}</main></body></html>\n"
     )
 
 
@@ -63,28 +54,21 @@ def _title(results: Results) -> str:
     return f"{counted}: {shares} of the possible savings kept" if shares else f"Results on {counted}"
 
 
-def _opening(results: Results, title: str) -> str:
+def _opening(results: Results, title: str, pictures: Pictures) -> str:
     missing = ", ".join(results.unfinished)
     (name, home), *others = results.finished.items()
     return (
         paragraph(f"Hemma {results.hemma}: home energy management that learns from an optimiser", "kicker")
         + heading(1, title)
-        + (_summary_table(results) if others else paragraph(headline(name, home).text, "lead"))
+        + (overview_section(results, pictures) if others else paragraph(headline(name, home).text, "lead"))
         + (paragraph(f"Not finished yet: {missing}.") if missing else "")
     )
-
-
-def _summary_table(results: Results) -> str:
-    rows = [
-        row(name, [cell(text) for text in summary_cells(home)]) for name, home in results.finished.items()
-    ]
-    return table("The homes at a glance; means over the seeds.", SUMMARY_HEADINGS, [body(rows)])
 
 
 def _reading_section(results: Results) -> str:
     return (
         heading(2, "How to read it")
-        + definitions(METRIC_MEANINGS)
+        + definitions(metric_meanings(results))
         + heading(3, "The methods")
         + definitions(method_meanings(results))
     )

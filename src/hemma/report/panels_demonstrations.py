@@ -1,6 +1,6 @@
 """Panels (a) and (b): what more days of demonstrations bring."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
@@ -8,10 +8,12 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from hemma.report.canvas import FAINT, legend_above, say_nothing_to_show
 from hemma.report.methods import in_order, look_of
-from hemma.report.numbers import plain
-from hemma.report.results import DemonstrationRuns, HomeResults, Intervals, Metrics
+from hemma.report.numbers import decimals, plain
+from hemma.report.records import DemonstrationRuns, Intervals, Metrics
+from hemma.report.results import HomeResults
 
-REFERENCES = ("Rule", "optimum")
+REFERENCES = ("Rule", "PPO", "MaxEnt IRL", "DNLP", "optimum")
+"""Methods whose level is drawn where they were not trained on demonstrations of several lengths."""
 _SPREAD = 1.06
 """Factor between the places of two methods at the same length, so that their whiskers stand side by side."""
 
@@ -79,7 +81,7 @@ def _draw(axes: Axes, home: HomeResults, quantity: Quantity) -> None:
         shift = _SPREAD ** (place - (len(methods) - 1) / 2)
         mine = sorted((point for point in points if point.method == method), key=lambda point: point.days)
         _draw_method(axes, mine, quantity, shift)
-    _draw_references(axes, home, quantity)
+    _draw_references(axes, home, quantity, methods)
     _label_lengths(axes, sorted({point.days for point in points}))
     axes.set_ylabel(quantity.label)
     legend_above(axes, columns=3)
@@ -107,11 +109,31 @@ def _draw_method(axes: Axes, points: list[DemonstrationRuns], quantity: Quantity
     )
 
 
-def _draw_references(axes: Axes, home: HomeResults, quantity: Quantity) -> None:
-    for name in REFERENCES:
-        value = quantity.read(_reference(home, name))
-        if value is not None:
+def _draw_references(axes: Axes, home: HomeResults, quantity: Quantity, trained: list[str]) -> None:
+    """The levels of other methods as lines; one so far away that it would flatten the rest is only named."""
+    values = {name: quantity.read(_reference(home, name)) for name in REFERENCES if name not in trained}
+    levels = {name: value for name, value in values.items() if value is not None}
+    seen = [*_ends(home, quantity), *(levels[name] for name in ("optimum",) if name in levels)]
+    low, high = min(seen), max(seen)
+    reach = high - low if axes.get_yscale() == "linear" and high > low else float("inf")
+    far = {name: value for name, value in levels.items() if not low - reach <= value <= high + reach}
+    for name, value in levels.items():
+        if name not in far:
             axes.axhline(value, color=look_of(name).colour, linestyle=look_of(name).line, lw=1.3, label=name)
+    if far:
+        said = ", ".join(f"{name} {decimals(value, 2)}" for name, value in far.items())
+        ground = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+        place = axes.transAxes
+        axes.text(0.99, 0.98, f"far off: {said}", ha="right", va="top", transform=place, size=8, bbox=ground)
+
+
+def _ends(home: HomeResults, quantity: Quantity) -> Iterator[float]:
+    """Every mean and every end of an interval that is drawn."""
+    for point in demonstration_lengths(home):
+        yield from (quantity.read_interval(point.interval) or ())
+        mean = quantity.read(point.mean)
+        if mean is not None:
+            yield mean
 
 
 def _reference(home: HomeResults, name: str) -> Metrics:

@@ -2,10 +2,22 @@
 
 from hemma.report.explanations import LIMITS, data_facts
 from hemma.report.figures import HomePictures
-from hemma.report.markup import body, bullets, cell, definitions, figure, heading, paragraph, row, table
-from hemma.report.methods import GROUPS, OTHERS, main_method
+from hemma.report.markup import (
+    body,
+    bullets,
+    cell,
+    definitions,
+    figure,
+    figure_or,
+    heading,
+    paragraph,
+    row,
+    table,
+)
+from hemma.report.methods import grouped, main_method
 from hemma.report.numbers import SPACE, degrees, money, seconds
 from hemma.report.results import HomeResults
+from hemma.report.sections_comparisons import comparisons_section
 from hemma.report.table import TABLE_HEADINGS, TableRow
 
 
@@ -20,6 +32,9 @@ def results_section(home: HomeResults, rows: list[TableRow], pictures: HomePictu
         + "".join(figure(picture, style) for picture, style in zip(pictures.panels, wide, strict=True))
         + "</div>"
         + figure(pictures.powers, "full")
+        + heading(3, "A week of every method")
+        + figure_or(pictures.traces, "No schedule in this folder.")
+        + comparisons_section(home, pictures)
     )
 
 
@@ -27,12 +42,9 @@ def background_section(name: str, home: HomeResults, pictures: HomePictures) -> 
     """Training, identification and data."""
     return (
         heading(2, f"Training, model and data of {name}")
-        + heading(3, "Training curves")
-        + (
-            figure(pictures.training, "full")
-            if pictures.training
-            else paragraph("No training curve in this folder.")
-        )
+        + heading(3, "Learning curves")
+        + figure_or(pictures.learning, "No training curve in this folder.")
+        + (figure(pictures.diagnostics, "full") if pictures.diagnostics else "")
         + heading(3, "Identification")
         + _identification(home, pictures)
         + heading(3, "Data, attribution and limits")
@@ -44,13 +56,10 @@ def background_section(name: str, home: HomeResults, pictures: HomePictures) -> 
 
 def _method_table(home: HomeResults, rows: list[TableRow]) -> str:
     main = main_method(home.methods)
-    grouped = {group.title: [row for row in rows if row.method in group.methods] for group in GROUPS}
-    known = {name for group in GROUPS for name in group.methods}
-    grouped[OTHERS] = [row for row in rows if row.method not in known]
+    by_method = {entry.method: entry for entry in rows}
     bodies = [
-        body([_method_row(entry, entry.method == main) for entry in entries], title, len(TABLE_HEADINGS))
-        for title, entries in grouped.items()
-        if entries
+        body([_method_row(by_method[name], name == main) for name in names], title, len(TABLE_HEADINGS))
+        for title, names in grouped(home.methods).items()
     ]
     return table("Mean over the seeds [95 % interval]", TABLE_HEADINGS, bodies)
 

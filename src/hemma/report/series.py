@@ -66,17 +66,16 @@ class FreeRun:
 
 @dataclass(frozen=True)
 class TrainingCurve:
-    """One training run; a quantity that the method does not have is None."""
+    """One training run; which quantities it has depends on the method."""
 
     iteration: Float[np.ndarray, "rows"]
-    discriminator_loss: Float[np.ndarray, "rows"] | None
-    expert_accuracy: Float[np.ndarray, "rows"] | None
-    agent_accuracy: Float[np.ndarray, "rows"] | None
-    learned_reward: Float[np.ndarray, "rows"] | None
-    policy_kl: Float[np.ndarray, "rows"] | None
-    policy_entropy: Float[np.ndarray, "rows"] | None
-    train_energy_cost: Float[np.ndarray, "rows"] | None
-    train_temperature_deviation: Float[np.ndarray, "rows"] | None
+    quantities: dict[str, Float[np.ndarray, "rows"]]
+    """All other columns of the file, by their names."""
+
+    @property
+    def share(self) -> Float[np.ndarray, "rows"]:
+        """How much of the training was over, as a fraction."""
+        return self.iteration / max(1.0, float(self.iteration[-1]))
 
 
 class SeriesReader:
@@ -134,20 +133,17 @@ class SeriesReader:
         """The training curve of one run."""
         path = self.located(name)
         table = _table(path, ("iteration",))
-
-        def optional(column: str) -> np.ndarray | None:
-            return _numbers(path, table, column) if column in table.columns else None
-
+        if table.empty:
+            raise HemmaError(
+                f"{path}: expected a row a chunk of iterations, found none. Run the training again"
+            )
         return TrainingCurve(
             iteration=_numbers(path, table, "iteration"),
-            discriminator_loss=optional("discriminator_loss"),
-            expert_accuracy=optional("expert_accuracy"),
-            agent_accuracy=optional("agent_accuracy"),
-            learned_reward=optional("learned_reward"),
-            policy_kl=optional("policy_kl"),
-            policy_entropy=optional("policy_entropy"),
-            train_energy_cost=optional("train_energy_cost"),
-            train_temperature_deviation=optional("train_temperature_deviation"),
+            quantities={
+                str(column): _numbers(path, table, str(column))
+                for column in table.columns
+                if column != "iteration"
+            },
         )
 
 

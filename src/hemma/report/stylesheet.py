@@ -29,8 +29,10 @@ th { font-weight: 600; }
 thead th { vertical-align: bottom; border-bottom: 2px solid var(--faint); }
 tbody th, thead th:first-child { text-align: left; padding-left: 0; white-space: nowrap; }
 td { white-space: nowrap; }
+tbody th:not(.group), thead th:first-child { position: sticky; left: 0; background: var(--paper); }
 tbody th.group { color: var(--faint); font-weight: 400; font-size: .82rem; padding-top: .9rem; }
-tr.main th, tr.main td { background: color-mix(in srgb, var(--accent) 12%, transparent); font-weight: 600; }
+tr.main th:not(.group), tr.main td { background: color-mix(in srgb, var(--accent) 12%, var(--paper));
+  font-weight: 600; }
 tr.main th { padding-left: .4rem; }
 td small { display: block; color: var(--faint); font-size: .8em; font-weight: 400; }
 td.text { text-align: left; white-space: normal; }

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, decimals, degrees, fine, hundredths, money, percent, seconds
-from hemma.report.results import HomeResults, Method, Results, Run, load_results
+from hemma.report.records import Method
+from hemma.report.results import HomeResults, Results, load_results
 
 TABLE_HEADINGS = (
     "Method",
@@ -17,8 +18,9 @@ TABLE_HEADINGS = (
     "Mean deviation",
     "Gap to optimum",
     "Share of savings",
-    "Training time",
+    "Interquartile mean",
     "Worst seed",
+    "Training time",
 )
 
 
@@ -29,7 +31,8 @@ class Cell:
     value: str
     """The mean over the seeds with its unit, or an en dash."""
     detail: str = ""
-    """The 95 % interval ``[low, high]`` in the same unit, if there is one; of the worst seed the gap."""
+    """The 95 % interval ``[low, high]`` in the same unit, if there is one; beside the interquartile mean of
+    the cost that of the share of savings, beside the worst seed's cost its gap."""
 
     def __str__(self) -> str:
         """Both, as printed on one line."""
@@ -59,8 +62,9 @@ class TableRow:
     mean_temperature_deviation: Cell
     gap_to_optimum: Cell
     share_of_savings: Cell
-    seconds_to_train: Cell
+    interquartile_mean: Cell
     worst_seed: Cell
+    seconds_to_train: Cell
 
     @property
     def measures(self) -> tuple[Cell, ...]:
@@ -73,8 +77,9 @@ class TableRow:
             self.mean_temperature_deviation,
             self.gap_to_optimum,
             self.share_of_savings,
-            self.seconds_to_train,
+            self.interquartile_mean,
             self.worst_seed,
+            self.seconds_to_train,
         )
 
     @property
@@ -97,17 +102,6 @@ def results_table(source: Path | Results) -> list[TableRow]:
     ]
 
 
-def worst_run(method: Method) -> Run | None:
-    """The seed farthest from the optimum at equal comfort (by cost where no gap is defined); None of one."""
-    if len(method.runs) < 2:
-        return None
-    gaps = [run for run in method.runs if run.gap_to_optimum is not None]
-    if gaps:
-        return max(gaps, key=lambda run: run.gap_to_optimum or 0.0)
-    costs = [run for run in method.runs if run.energy_cost is not None]
-    return max(costs, key=lambda run: run.energy_cost or 0.0) if costs else None
-
-
 def _row(name: str, home: HomeResults, title: str, method: Method) -> TableRow:
     mean, interval = method.mean, method.interval
 
@@ -115,7 +109,7 @@ def _row(name: str, home: HomeResults, title: str, method: Method) -> TableRow:
     return TableRow(
         home=name,
         method=title,
-        seeds=Cell(str(len(method.runs)) if method.runs[0].seed is not None else DASH),
+        seeds=Cell(str(len(method.runs)) if method.is_learned else DASH),
         energy_cost=_cell(mean.energy_cost, interval.energy_cost, cost),
         transaction_cost=_cell(mean.transaction_cost, interval.transaction_cost, cost),
         battery_cost=_cell(mean.battery_cost, interval.battery_cost, cost),
@@ -126,8 +120,9 @@ def _row(name: str, home: HomeResults, title: str, method: Method) -> TableRow:
         share_of_savings=_cell(
             mean.share_of_savings, interval.share_of_savings, Notation(percent, hundredths)
         ),
-        seconds_to_train=Cell(seconds(mean.seconds_to_train)),
+        interquartile_mean=_interquartile_cell(method, home.currency),
         worst_seed=_worst_cell(method, home.currency),
+        seconds_to_train=Cell(seconds(mean.seconds_to_train)),
     )
 
 
@@ -138,8 +133,16 @@ def _cell(mean: float | None, interval: tuple[float, float] | None, notation: No
     return Cell(notation.full(mean), f"[{low}, {high}]")
 
 
+def _interquartile_cell(method: Method, currency: str) -> Cell:
+    middle = method.interquartile_mean
+    if len(method.runs) < 2:
+        return Cell(DASH)
+    share = "" if middle.share_of_savings is None else f"(share {percent(middle.share_of_savings)})"
+    return Cell(money(middle.energy_cost, currency), share)
+
+
 def _worst_cell(method: Method, currency: str) -> Cell:
-    worst = worst_run(method)
+    worst = method.worst_run
     if worst is None:
         return Cell(DASH)
     gap = "" if worst.gap_to_optimum is None else f"(gap {percent(worst.gap_to_optimum)})"

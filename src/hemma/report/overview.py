@@ -1,0 +1,122 @@
+"""The start of a report on several homes: every method over all of them."""
+
+from dataclasses import dataclass
+
+from hemma.report.figures import Pictures
+from hemma.report.findings import Aggregated, AggregateMethod
+from hemma.report.headline import summary_cells
+from hemma.report.markup import body, cell, figure, paragraph, row, table
+from hemma.report.methods import grouped, main_method
+from hemma.report.numbers import DASH, degrees, fine, hundredths, percent
+from hemma.report.records import Run
+from hemma.report.results import Results
+from hemma.report.table import Cell
+
+OVERVIEW_HEADINGS = (
+    "Method",
+    "Share of savings",
+    "Interquartile mean",
+    "Worst seed",
+    "Gap to optimum",
+    "Mean deviation",
+)
+GLANCE_HEADINGS = (
+    "Home",
+    "Method",
+    "Energy cost",
+    "Rule",
+    "Perfect information",
+    "Share of savings",
+    "Gap to optimum",
+    "Mean deviation",
+)
+
+
+@dataclass(frozen=True)
+class WorstRun:
+    """The run of a method that keeps the least of the possible savings, over all homes."""
+
+    home: str
+    run: Run
+
+
+def worst_over_homes(results: Results, method: str) -> WorstRun | None:
+    """The worst run by share of savings; None where no run has a share."""
+    shared = [
+        WorstRun(name, run)
+        for name, home in results.finished.items()
+        if method in home.methods
+        for run in home.methods[method].runs
+        if run.share_of_savings is not None
+    ]
+    return min(shared, key=lambda worst: worst.run.share_of_savings or 0.0) if shared else None
+
+
+def overview_section(results: Results, pictures: Pictures) -> str:
+    """All methods over all homes: a table, the shares of savings home by home, who beats whom, the homes."""
+    return (
+        _methods_table(results)
+        + (figure(pictures.shares, "full") if pictures.shares else "")
+        + (figure(pictures.improvement, "full") if pictures.improvement else "")
+        + _homes_table(results)
+    )
+
+
+def _methods_table(results: Results) -> str:
+    aggregate = results.aggregate
+    if aggregate is None or not aggregate.methods:
+        return paragraph("No statistics over homes in this folder.", "faint")
+    main = main_method(aggregate.methods)
+    bodies = [
+        body(
+            [_method_row(results, name, aggregate.methods[name], name == main) for name in names],
+            title,
+            len(OVERVIEW_HEADINGS),
+        )
+        for title, names in grouped(aggregate.methods).items()
+    ]
+    counted = len(aggregate.homes or results.finished)
+    return table(
+        f"Every method over {counted} homes; mean over homes and seeds [95 % interval]",
+        OVERVIEW_HEADINGS,
+        bodies,
+    )
+
+
+def _method_row(results: Results, name: str, found: AggregateMethod, is_main: bool) -> str:
+    cells = (
+        _percent_cell(found.share_of_savings),
+        Cell(percent(found.share_of_savings.interquartile_mean)),
+        _worst_cell(worst_over_homes(results, name)),
+        _percent_cell(found.gap_to_optimum),
+        _deviation_cell(found.mean_temperature_deviation),
+    )
+    return row(name, [cell(c.value, c.detail) for c in cells], "main" if is_main else "")
+
+
+def _percent_cell(found: Aggregated) -> Cell:
+    if found.interval is None:
+        return Cell(percent(found.mean))
+    low, high = found.interval
+    return Cell(percent(found.mean), f"[{hundredths(low)}, {hundredths(high)}]")
+
+
+def _deviation_cell(found: Aggregated) -> Cell:
+    if found.interval is None:
+        return Cell(degrees(found.mean))
+    low, high = found.interval
+    return Cell(degrees(found.mean), f"[{fine(low)}, {fine(high)}]")
+
+
+def _worst_cell(worst: WorstRun | None) -> Cell:
+    if worst is None:
+        return Cell(DASH)
+    seed = "" if worst.run.seed is None else f", seed {worst.run.seed}"
+    return Cell(percent(worst.run.share_of_savings), f"{worst.home}{seed}")
+
+
+def _homes_table(results: Results) -> str:
+    rows = [
+        row(name, [cell(text) for text in summary_cells(home)]) for name, home in results.finished.items()
+    ]
+    return table("The homes at a glance; means over the seeds.", GLANCE_HEADINGS, [body(rows)])

@@ -1,0 +1,147 @@
+"""The plain records of ``results.json``: runs, methods, periods, and what is known about a home."""
+
+import math
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+
+def _finite_or_none(value: Any) -> Any:
+    """JSON has no NaN: a metric that is undefined comes as null, as NaN or as an infinity."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _both_or_none(value: Any) -> Any:
+    if isinstance(value, list) and any(_finite_or_none(bound) is None for bound in value):
+        return None
+    return value
+
+
+Number = Annotated[float | None, BeforeValidator(_finite_or_none)]
+"""A metric, or None where it is undefined."""
+Range = Annotated[tuple[float, float] | None, BeforeValidator(_both_or_none)]
+"""Low and high end of a 95 % interval, or None where there is none."""
+
+
+class Record(BaseModel):
+    """What all parts of the file share: frozen, and unknown keys of later versions are left alone."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class Metrics(Record):
+    """The metrics of one run, or their means over the runs of a method."""
+
+    energy_cost: Number = None
+    """Sum of X1 + X2 over the test period [currency]."""
+    transaction_cost: Number = None
+    """Sum of X1 [currency]."""
+    battery_cost: Number = None
+    """Sum of X2 [currency]."""
+    mean_temperature_deviation: Number = None
+    """Mean of X3 [degC]."""
+    total_temperature_deviation: Number = None
+    """Sum of X3 [degC]."""
+    gap_to_optimum: Number = None
+    """Distance to the optimum at equal comfort, a fraction."""
+    share_of_savings: Number = None
+    """Part of the possible savings that was kept, at equal comfort, a fraction."""
+    regret: Number = None
+    """Cost minus optimum(D) [currency]."""
+    seconds_to_train: Number = None
+    """Training time [s]."""
+
+
+class Intervals(Record):
+    """The 95 % intervals of the means, by the names of the metrics."""
+
+    energy_cost: Range = None
+    transaction_cost: Range = None
+    battery_cost: Range = None
+    mean_temperature_deviation: Range = None
+    total_temperature_deviation: Range = None
+    gap_to_optimum: Range = None
+    share_of_savings: Range = None
+    regret: Range = None
+    seconds_to_train: Range = None
+
+
+class Run(Metrics):
+    """One run; a deterministic method has one, without a seed."""
+
+    seed: int | None = None
+    schedule: str | None = None
+    """Path of its schedule inside the folder."""
+    curve: str | None = None
+    """Path of its training curve inside the folder; None without training."""
+
+
+class Method(Record):
+    """All runs of a method on a home."""
+
+    runs: tuple[Run, ...] = Field(min_length=1)
+    mean: Metrics
+    interval: Intervals = Intervals()
+    interquartile_mean: Metrics = Metrics()
+    """Means of the middle half of the runs, which one run gone astray does not move."""
+    worst_seed: int | None = None
+
+    @property
+    def is_learned(self) -> bool:
+        """Whether it has seeds: whoever trained it might have drawn another one."""
+        return self.runs[0].seed is not None
+
+    @property
+    def typical_run(self) -> Run:
+        """The run of median energy cost (the lower one of two): what the time plots show."""
+        priced = [run for run in self.runs if run.energy_cost is not None] or list(self.runs)
+        return sorted(priced, key=lambda run: run.energy_cost or 0.0)[(len(priced) - 1) // 2]
+
+    @property
+    def worst_run(self) -> Run | None:
+        """The run of ``worst_seed``, else the one farthest from the optimum at equal comfort (by cost where
+        no gap is defined); None of a single run."""
+        if len(self.runs) < 2:
+            return None
+        named = [run for run in self.runs if run.seed is not None and run.seed == self.worst_seed]
+        if named:
+            return named[0]
+        gaps = [run for run in self.runs if run.gap_to_optimum is not None]
+        if gaps:
+            return max(gaps, key=lambda run: run.gap_to_optimum or 0.0)
+        costs = [run for run in self.runs if run.energy_cost is not None]
+        return max(costs, key=lambda run: run.energy_cost or 0.0) if costs else None
+
+
+class DemonstrationRuns(Method):
+    """A method trained on demonstrations of a certain length."""
+
+    days: float
+    method: str
+
+
+class Period(Record):
+    """A period of the traces."""
+
+    start: str
+    slots: int
+
+
+class Identification(Record):
+    """How well the identified network predicts the indoor temperature without correction."""
+
+    rmse_c: dict[str, Number] = {}
+    """Root mean square error [degC] by prediction horizon."""
+    free_run: str | None = None
+    """Path of the free run inside the folder."""
+    seconds: Number = None
+
+
+class Optimum(Record):
+    """Perfect information with the least reachable deviation."""
+
+    energy_cost: Number = None
+    mean_temperature_deviation: Number = None
+    bound: Number = None
+    """Proven lower bound of the cost [currency]."""
+    relative_gap: Number = None
