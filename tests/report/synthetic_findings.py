@@ -1,5 +1,7 @@
 """Made-up comparisons of methods for a made-up results folder."""
 
+from itertools import combinations
+
 import numpy as np
 
 HINDSIGHT = ("MPC perfect", "HMPC", "HMPC joint", "DNLP", "optimum", "no battery")
@@ -16,9 +18,7 @@ def interquartile_mean(values: list) -> float | None:
 
 def improvements(methods: dict) -> list[dict]:
     """Each pair once, by regret."""
-    names = list(methods)
-    pairs = [(first, second) for place, first in enumerate(names) for second in names[place + 1 :]]
-    return [_improvement(methods, first, second) for first, second in pairs]
+    return [_improvement(methods, first, second) for first, second in combinations(methods, 2)]
 
 
 def regret_split(method: dict) -> dict:
@@ -43,8 +43,25 @@ def aggregate(homes: dict) -> dict:
     """All methods over all homes, with a made-up interval."""
     first = next(iter(homes.values()))["methods"]
     methods = {name: _over_homes([home["methods"][name] for home in homes.values()]) for name in first}
-    learned = {name: method for name, method in first.items() if method["runs"][0]["seed"] is not None}
-    return {"homes": list(homes), "methods": methods, "probability_of_improvement": improvements(learned)}
+    return {
+        "homes": list(homes),
+        "methods": methods,
+        "probability_of_improvement": improvements(first),
+        "paired": [_paired(homes, *pair) for pair in combinations(first, 2)],
+    }
+
+
+def _paired(homes: dict, method: str, over: str) -> dict:
+    differences = {
+        name: home["methods"][method]["mean"]["share_of_savings"]
+        - home["methods"][over]["mean"]["share_of_savings"]
+        for name, home in homes.items()
+    }
+    mean = float(np.mean(list(differences.values())))
+    return {
+        "method": method, "over": over, "metric": "share_of_savings", "differences": differences,
+        "mean": mean, "interval": [mean - 0.05, mean + 0.04],
+    }  # fmt: skip
 
 
 def _over_homes(methods: list[dict]) -> dict:
@@ -59,6 +76,7 @@ def _over_homes(methods: list[dict]) -> dict:
         found[measure] = {
             "mean": mean,
             "interval": [mean - spread, mean + spread] if len(values) > len(methods) else None,
+            "interval_over_homes": [mean - 2 * spread, mean + 2 * spread],
             "interquartile_mean": interquartile_mean(values),
             "worst": max(values),
         }

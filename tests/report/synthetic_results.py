@@ -62,7 +62,7 @@ def write_results(
         "schema": 1,
         "hemma": "0.1.0",
         "settings": {"seeds": list(range(seeds)), "airl": {"rounds": 1800, "discount": 0.99}, "tariff": None},
-        "interval_kind": "percentile bootstrap",
+        "interval_kind": "Student's t below 10 runs, bootstrap from 10 runs on",
         "homes": {name: _home(folder, name, seeds, methods) for name in homes},
     }
     if len(homes) > 1:
@@ -107,7 +107,7 @@ def _home(folder: Path, name: str, seeds: int, methods: tuple[str, ...]) -> dict
             for days in (1, 3, 7, 15, 30, 60)
             for method, base in (("AIRL", 30.8), ("GAIL", 31.9), ("BC", 33.0))
         ],
-        "probability_of_improvement": improvements({name: found[name] for name in found if name in TRAINED}),
+        "probability_of_improvement": improvements(found),
         "regret": {name: regret_split(found[name]) for name in found if name not in HINDSIGHT},
         "pareto": pareto(),
     }  # fmt: skip

@@ -9,9 +9,9 @@ from synthetic_results import save_results, write_results
 
 from hemma.report import write_report
 from hemma.report.canvas import drawing_style, new_figure
-from hemma.report.findings import Improvement, RegretSplit
+from hemma.report.findings import Improvement, PairedDifference, RegretSplit
 from hemma.report.labels import Label, place_labels
-from hemma.report.overview import worst_over_homes
+from hemma.report.overview import differences_of, worst_over_homes
 from hemma.report.panels_homes import homes_figure
 from hemma.report.panels_improvement import comparison_of, improvement_figure
 from hemma.report.panels_pareto import pareto_figure, sweeps_of
@@ -157,6 +157,21 @@ def test_the_worst_run_over_homes_is_found_with_its_home_and_seed(two_homes):
     assert worst_over_homes(two_homes, "DNLP") is None
 
 
+def test_the_main_method_against_the_others_home_by_home():
+    share = {"method": "PPO", "metric": "share_of_savings"}
+    pairs = [
+        PairedDifference(
+            over="HA-1", mean=-0.2, interval=(-0.3, -0.1), differences={"a": -0.3, "b": 0.1}, **share
+        ),
+        PairedDifference(over="Rule", mean=0.5, **share),
+    ]
+    found = differences_of("HA-1", pairs)
+    assert list(found) == ["PPO"]
+    assert found["PPO"].mean == 0.2
+    assert found["PPO"].interval == (0.1, 0.3)
+    assert found["PPO"].differences == {"a": 0.3, "b": -0.1}
+
+
 @pytest.mark.usefixtures("undrawn")
 def test_several_homes_begin_with_all_methods_over_homes(tmp_path):
     content = write_results(tmp_path, homes=("a", "bb"), seeds=2, methods=("HA-1", "PPO", "Rule"))
@@ -164,6 +179,8 @@ def test_several_homes_begin_with_all_methods_over_homes(tmp_path):
     mean = content["aggregate"]["methods"]["HA-1"]["share_of_savings"]["mean"]
     assert page.index("Every method over 2 homes") < page.index("The homes at a glance")
     assert f"{100 * mean:.1f}\u00a0%" in page
+    assert "HA-1 against the others, home by home" in page
+    assert "2 of 2 homes" in page
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     assert {"homes-share-of-savings.svg", "homes-probability-of-improvement.png"} <= names
     del content["aggregate"]

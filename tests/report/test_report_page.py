@@ -149,7 +149,7 @@ def test_the_parts_of_the_regret_stand_in_a_table(written, page):
 
 @pytest.mark.usefixtures("undrawn")
 def test_the_kind_of_interval_is_told_and_older_folders_used_students_t(written, page, small):
-    assert "95 % interval of that mean (percentile bootstrap)" in page.text
+    assert "95 % interval of that mean (Student's t below 10 runs, bootstrap from 10 runs on)" in page.text
     folder, content = small
     del content["interval_kind"]
     save_results(folder, content)
@@ -166,7 +166,7 @@ def test_an_older_folder_says_what_it_does_not_have(small):
     page = _Page(write_report(folder).read_text(encoding="utf-8"))
     assert "No sweep of cost against comfort in this folder." in page.texts
     assert "The regret is not split in this folder." in page.texts
-    assert "No two learned methods are compared run by run in this folder." in page.texts
+    assert "No learned method is compared with another run by run in this folder." in page.texts
 
 
 def test_hostile_names_are_text(tmp_path):

@@ -74,8 +74,8 @@ def metric_meanings(results: Results) -> list[tuple[str, str]]:
 
 def _seeds_and_intervals(results: Results) -> str:
     over_homes = (
-        " Over several homes the runs of every home count alike, and the intervals cover the drawing of "
-        "seeds on these homes, not that of other homes."
+        " Over several homes every home counts the same: the interval below a mean is about these homes with "
+        "other seeds, the one called 'on other homes' about homes drawn like these."
         if results.aggregate is not None
         else ""
     )

@@ -31,6 +31,9 @@ from hemma.report.series import FreeRun, SeriesReader
 from hemma.report.six_panels import combined_figure, powers_figure, separate_panels
 from hemma.report.week import WEEK_DAYS, Week, read_week
 
+NOT_LEARNED = ("MPC forecast", "thresholds")
+"""What the learned methods are compared with, run by run, beside each other."""
+
 
 @dataclass(frozen=True)
 class HomeSeries:
@@ -144,12 +147,16 @@ def _pareto(shelf: Shelf, home: HomeResults) -> Picture | None:
 
 
 def _improvement(shelf: Shelf, home: HomeResults) -> Picture | None:
-    """Between the learned methods: of the others there is one run, which either beats another or does not."""
-    learned = [name for name, method in home.methods.items() if method.is_learned]
-    comparison = comparison_of(home.probability_of_improvement, learned)
+    comparison = comparison_of(home.probability_of_improvement, _compared(home))
     if not comparison.methods:
         return None
     return shelf.save(improvement_figure(comparison), words_of_improvement(comparison, "of this home"))
+
+
+def _compared(home: HomeResults) -> set[str]:
+    """The learned methods and two others: what knows nothing by chance either beats another or does not."""
+    learned = {name for name, method in home.methods.items() if method.is_learned}
+    return learned | set(NOT_LEARNED) if learned else set()
 
 
 def _learning(shelf: Shelf, home: HomeResults, curves: Curves) -> Picture | None:
@@ -176,8 +183,8 @@ def _shares(shelf: Shelf, results: Results) -> Picture | None:
 def _improvement_over_homes(shelf: Shelf, results: Results) -> Picture | None:
     if results.aggregate is None:
         return None
-    learned = {n for home in results.finished.values() for n, m in home.methods.items() if m.is_learned}
-    comparison = comparison_of(results.aggregate.probability_of_improvement, learned)
+    compared = set().union(*(_compared(home) for home in results.finished.values()))
+    comparison = comparison_of(results.aggregate.probability_of_improvement, compared)
     if not comparison.methods:
         return None
     return shelf.save(improvement_figure(comparison), words_of_improvement(comparison, "on the same home"))

@@ -54,7 +54,23 @@ class Aggregated(Record):
 
     mean: Number = None
     interval: Range = None
+    """On the same homes with other seeds."""
+    interval_over_homes: Range = None
+    """On other homes drawn like these, with other seeds."""
     interquartile_mean: Number = None
+
+
+class PairedDifference(Record):
+    """How much more of the possible savings one method keeps than another, home by home."""
+
+    method: str
+    over: str
+    metric: str = ""
+    differences: dict[str, Number] = Field(default_factory=dict)
+    """By home, fractions."""
+    mean: Number = None
+    interval: Range = None
+    """Over homes."""
 
 
 class AggregateMethod(Record):
@@ -72,3 +88,4 @@ class Aggregate(Record):
     homes: tuple[str, ...] = ()
     methods: dict[str, AggregateMethod] = Field(default_factory=dict)
     probability_of_improvement: tuple[Improvement, ...] = ()
+    paired: tuple[PairedDifference, ...] = ()

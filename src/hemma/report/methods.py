@@ -91,14 +91,15 @@ MEANINGS = {
     "the training period, the building is the identified network",
     "MPC hourly means": "the same planner, expecting the training period's mean at each time of day",
     "MPC yesterday": "the same planner, expecting the last known value at the same time of day",
-    "thresholds": "charges below one price and discharges above another, both fitted on the training period",
+    "thresholds": "charges below one price and discharges above another, both fitted on the training "
+    "period; the HVAC holds the edge of comfort by the identified building",
     "Rule": "a thermostat with hysteresis; the battery rests",
     "no battery": "holds the temperature at the edge of comfort; there is no battery",
     "MPC perfect": "the same planner as MPC forecast, told the next hours exactly: what is left is due to "
     "its horizon and to the identified building",
     "HMPC": "the expert: the two-level optimiser in hindsight, with the identified network as its model",
     "HMPC joint": "HVAC and battery planned together and exactly in hindsight through the identified "
-    "network, carried out on the real home: what the expert's two levels give away",
+    "network, carried out on the real home without a correction: what the expert's two levels give away",
     "DNLP": "the optimum's problem again as a nonlinear programme over the whole period in hindsight, "
     "solved by an interior-point method; a local optimum, so an independent check of the proven one",
     "optimum": "the proven least cost in hindsight, with the least deviation that is possible",

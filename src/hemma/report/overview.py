@@ -1,9 +1,10 @@
 """The start of a report on several homes: every method over all of them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hemma.report.figures import Pictures
-from hemma.report.findings import Aggregated, AggregateMethod
+from hemma.report.findings import Aggregated, AggregateMethod, PairedDifference
 from hemma.report.headline import summary_cells
 from hemma.report.markup import body, cell, figure, paragraph, row, table
 from hemma.report.methods import grouped, main_method
@@ -15,11 +16,13 @@ from hemma.report.table import Cell
 OVERVIEW_HEADINGS = (
     "Method",
     "Share of savings",
+    "On other homes",
     "Interquartile mean",
     "Worst seed",
     "Gap to optimum",
     "Mean deviation",
 )
+PAIRED_HEADINGS = ("Against", "Points of the share of savings", "On other homes", "Better on")
 GLANCE_HEADINGS = (
     "Home",
     "Method",
@@ -57,6 +60,7 @@ def overview_section(results: Results, pictures: Pictures) -> str:
     return (
         _methods_table(results)
         + (figure(pictures.shares, "full") if pictures.shares else "")
+        + _paired_table(results)
         + (figure(pictures.improvement, "full") if pictures.improvement else "")
         + _homes_table(results)
     )
@@ -86,6 +90,7 @@ def _methods_table(results: Results) -> str:
 def _method_row(results: Results, name: str, found: AggregateMethod, is_main: bool) -> str:
     cells = (
         _percent_cell(found.share_of_savings),
+        Cell(_between(found.share_of_savings.interval_over_homes)),
         Cell(percent(found.share_of_savings.interquartile_mean)),
         _worst_cell(worst_over_homes(results, name)),
         _percent_cell(found.gap_to_optimum),
@@ -94,11 +99,54 @@ def _method_row(results: Results, name: str, found: AggregateMethod, is_main: bo
     return row(name, [cell(c.value, c.detail) for c in cells], "main" if is_main else "")
 
 
+def _paired_table(results: Results) -> str:
+    """The main method against every other, home by home."""
+    aggregate = results.aggregate
+    if aggregate is None or not aggregate.methods:
+        return ""
+    main = main_method(aggregate.methods)
+    differences = differences_of(main, aggregate.paired)
+    bodies = [
+        body([_paired_row(name, differences[name]) for name in names], title, len(PAIRED_HEADINGS))
+        for title, names in grouped(differences).items()
+    ]
+    caption = f"{main} against the others, home by home; percentage points, above zero {main} keeps more"
+    return table(caption, PAIRED_HEADINGS, bodies) if bodies else ""
+
+
+def differences_of(method: str, paired: Iterable[PairedDifference]) -> dict[str, PairedDifference]:
+    """By the other method how much more of the savings ``method`` keeps; pairs the other way are turned."""
+    own = {pair.over: pair for pair in paired if pair.method == method}
+    turned = {pair.method: _turned(pair) for pair in paired if pair.over == method}
+    known = {name: pair for name, pair in (own | turned).items() if pair.metric == "share_of_savings"}
+    return {name: pair for name, pair in known.items() if pair.mean is not None}
+
+
+def _turned(pair: PairedDifference) -> PairedDifference:
+    interval = None if pair.interval is None else (-pair.interval[1], -pair.interval[0])
+    differences = {home: None if gain is None else -gain for home, gain in pair.differences.items()}
+    return PairedDifference(
+        method=pair.over,
+        over=pair.method,
+        metric=pair.metric,
+        differences=differences,
+        mean=None if pair.mean is None else -pair.mean,
+        interval=interval,
+    )
+
+
+def _paired_row(name: str, pair: PairedDifference) -> str:
+    known = [gain for gain in pair.differences.values() if gain is not None]
+    better = f"{sum(gain > 0 for gain in known)} of {len(known)} homes"
+    return row(name, [cell(text) for text in (hundredths(pair.mean), _between(pair.interval), better)])
+
+
+def _between(interval: tuple[float, float] | None) -> str:
+    return DASH if interval is None else f"[{hundredths(interval[0])}, {hundredths(interval[1])}]"
+
+
 def _percent_cell(found: Aggregated) -> Cell:
-    if found.interval is None:
-        return Cell(percent(found.mean))
-    low, high = found.interval
-    return Cell(percent(found.mean), f"[{hundredths(low)}, {hundredths(high)}]")
+    return Cell(percent(found.mean), "" if found.interval is None else _between(found.interval))
 
 
 def _deviation_cell(found: Aggregated) -> Cell:

@@ -19,7 +19,9 @@ def comparisons_section(home: HomeResults, pictures: HomePictures) -> str:
         + figure_or(pictures.regret, "The regret is not split in this folder.")
         + (_regret_table(home) if home.regret else "")
         + heading(3, "How sure the differences are")
-        + figure_or(pictures.improvement, "No two learned methods are compared run by run in this folder.")
+        + figure_or(
+            pictures.improvement, "No learned method is compared with another run by run in this folder."
+        )
     )
 
 
