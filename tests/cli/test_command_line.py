@@ -10,29 +10,10 @@ import pytest
 import yaml
 
 from hemma.cli import console, experiment
-from hemma.cli.main import run
 from hemma.data import load_austin2021, read_canonical
 
 main_job = importlib.import_module("hemma.experiment.run")
 """The module; the package has a function of that name."""
-
-
-@pytest.fixture
-def hemma(monkeypatch, capsys):
-    """Runs a command in this process; gives exit status, standard output and standard error."""
-
-    def command(*words):
-        monkeypatch.setattr(sys, "argv", ["hemma", *map(str, words)])
-        status = 0
-        try:
-            run()
-        except SystemExit as end:
-            status = end.code or 0
-        output = capsys.readouterr()
-        return status, output.out, output.err
-
-    monkeypatch.setenv("HEMMA_CACHE", "off")
-    return command
 
 
 def refused(result, *expected):
@@ -100,6 +81,12 @@ def test_export_and_check_of_a_home(hemma, tmp_path):
         (["--test-from", "2031-01-01"], ["2031-01-01"]),
         (["--seeds", "many"], ["--seeds"]),
         (["--homes"], ["--homes"]),
+        (["--homes", "1,7"], ["--homes", "all", "1 to 6", "'7' in '1,7'"]),
+        (["--homes", "1,,2"], ["got nothing in '1,,2'"]),
+        (["--homes", "three"], ["'three'"]),
+        (["--homes", "2,3,2"], ["got 2 twice"]),
+        (["--homes", "all", "--home", "1"], ["--home N or --homes LIST, got both"]),
+        (["--homes", "all", "--traces", "missing.csv"], ["leave one of them out"]),
     ],
 )
 def test_mistakes_in_the_options(hemma, tmp_path, monkeypatch, words, parts):
@@ -198,6 +185,21 @@ def test_options_reach_the_experiment(hemma, pretended, tmp_path):
         2 * load_austin2021(2).exogenous.pv_generation.max()
     )
     assert job.command.startswith("hemma demonstrate --traces")
+
+
+@pytest.mark.parametrize(
+    ("words", "numbers"),
+    [
+        (["--homes", "all"], [1, 2, 3, 4, 5, 6]),
+        (["--homes", "5, 1"], [5, 1]),
+        (["--home", "2", "--home", "4"], [2, 4]),
+        ([], [1]),
+    ],
+)
+def test_homes_are_those_that_were_asked_for(hemma, pretended, tmp_path, words, numbers):
+    assert hemma("identify", "--out", tmp_path, *words)[0] == 0
+    [(job, _)] = pretended
+    assert [home.name for home in job.homes] == [f"austin2021-{number}" for number in numbers]
 
 
 def test_every_verb_goes_as_far_as_its_name(hemma, pretended, tmp_path):

@@ -24,7 +24,7 @@ def test_every_command_and_option_is_explained():
         name = command.name or command.callback.__name__.replace("_", "-")
         assert f"hemma {name}" in TEXT or f"hemma data {name}" in TEXT, name
     shared = options(app.registered_commands[0].callback)
-    assert len(shared) == 8
+    assert len(shared) == 9
     for option in shared:
         assert f"`{option}" in TEXT, option
 
@@ -33,7 +33,13 @@ def test_every_option_that_is_shown_exists():
     known = {option for command in app.registered_commands for option in options(command.callback)}
     known |= {option for command in data.app.registered_commands for option in options(command.callback)}
     assert set(re.findall(r"--[a-z][a-z-]+", TEXT)) <= known
-    assert set(re.findall(r"hemma ([a-z]+)", TEXT)) <= {*experiment.VERBS, "report", "settings", "data"}
+    assert set(re.findall(r"hemma ([a-z]+)", TEXT)) <= {
+        *experiment.VERBS,
+        "report",
+        "settings",
+        "data",
+        "compare",
+    }
 
 
 def test_numbers_of_the_defaults_are_right():

@@ -96,14 +96,17 @@ def show_results(folder: Path, content: Any) -> None:
 
 
 def print_table(folder: Path) -> None:
-    """The main columns of the results, home by home; the report has all of them."""
+    """The main columns of the results, home by home, then over all homes; the report has all of them."""
     from rich.console import Console
     from rich.table import Table
 
+    from hemma.cli.aggregate import print_aggregate
     from hemma.report import results_table
+    from hemma.report.results import load_results
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
-    rows = results_table(folder)
+    results = load_results(folder)
+    rows = results_table(results)
     for home in dict.fromkeys(row.home for row in rows):
         table = Table("Method", title=f"{home}: mean of the runs, and its 95 % interval")
         for heading in COLUMNS:
@@ -120,3 +123,4 @@ def print_table(folder: Path) -> None:
                 )
                 table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in cells))
         console.print(table)
+    print_aggregate(console, results)

@@ -10,6 +10,7 @@ import typer
 
 from hemma.cli.compilation import keep_compiled_code
 from hemma.cli.console import going_on_later, print_json, print_table, show_progress, show_results
+from hemma.cli.homes import chosen_homes
 
 if TYPE_CHECKING:
     from hemma.experiment.run import Job
@@ -21,6 +22,10 @@ Traces = Annotated[
 Home = Annotated[
     list[int] | None,
     typer.Option("--home", help="Embedded home, 1 to 6; repeat it for several.", show_default="1"),
+]
+Homes = Annotated[
+    str | None,
+    typer.Option("--homes", metavar="LIST", help="Several embedded homes: all, or numbers such as 1,3,5."),
 ]
 TestFrom = Annotated[
     str | None,
@@ -98,6 +103,7 @@ def _command(verb: str):
     def command(  # noqa: PLR0913
         traces: Traces = None,
         home: Home = None,
+        homes: Homes = None,
         test_from: TestFrom = None,
         settings: Settings = None,
         out: Out = OUT,
@@ -105,8 +111,8 @@ def _command(verb: str):
         quick: Quick = False,
         json: Json = False,
     ) -> None:
-        homes = tuple(home or ())
-        content = _run(verb, Request(traces, homes, test_from, settings, out, seeds, quick))
+        chosen = chosen_homes(home, homes)
+        content = _run(verb, Request(traces, chosen, test_from, settings, out, seeds, quick))
         if json:
             print_json(content)
         else:
@@ -133,7 +139,7 @@ def _job(request: Request) -> "Job":
     from hemma.experiment.run import Job
 
     if request.traces is not None and request.homes:
-        raise HemmaError("expected --traces FILE or --home N, got both; leave one of them out")
+        raise HemmaError("expected --traces FILE or --home N (--homes LIST), got both; leave one of them out")
     experiment = _experiment(request)
     if request.traces is None:
         homes = embedded_homes(experiment, request.homes or (1,))

@@ -1,0 +1,112 @@
+"""``hemma compare``: several results folders side by side."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hemma.cli.console import WIDTH, print_json
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from hemma.report.comparison import Comparison
+
+Folders = Annotated[
+    list[Path],
+    typer.Argument(metavar="RESULTS...", help="Results folders; the others are compared with the first."),
+]
+File = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="FILE", help="Write it to a file too: .html, .csv or .json."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to ``app``."""
+    app.command()(compare)
+
+
+def compare(folders: Folders, out: File = None, json: Json = False) -> None:
+    """Set results folders side by side: costs, shares, comfort, and what differs in settings and data."""
+    from hemma.report.compare import compare as compare_folders
+    from hemma.report.comparison_files import comparison_document, write_comparison
+
+    comparison = compare_folders(folders)
+    if out is not None:
+        write_comparison(out, comparison)
+    if json:
+        print_json(comparison_document(comparison))
+    else:
+        _print_comparison(comparison)
+    if out is not None:
+        typer.echo(f"Comparison: {out}", err=json)
+
+
+def _print_comparison(comparison: "Comparison") -> None:
+    from rich.console import Console
+
+    from hemma.report.comparison_table import READING, legend
+
+    console = Console(width=None if sys.stdout.isatty() else WIDTH, highlight=False)
+    for line in legend(comparison):
+        console.print(line, markup=False)
+    _print_disagreements(console, comparison)
+    for note in comparison.notes:
+        console.print(f"Note: {note}", markup=False)
+    _print_methods(console, comparison)
+    _print_over_homes(console, comparison)
+    console.print(READING, markup=False)
+
+
+def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
+    from rich.markup import escape
+    from rich.table import Table
+
+    from hemma.report.comparison_table import disagreement_rows, letter
+
+    rows = disagreement_rows(comparison)
+    if not rows:
+        console.print("Version, source code and settings are the same in all folders.")
+        return
+    letters = [letter(place) for place in range(len(comparison.folders))]
+    table = Table("Different", *letters, title="What differs between the folders")
+    for row in rows:
+        table.add_row(*map(escape, row))
+    console.print(table)
+
+
+def _print_methods(console: "Console", comparison: "Comparison") -> None:
+    from hemma.report.comparison_table import METHOD_HEADINGS, home_rows
+
+    for home in comparison.homes:
+        _print_rows(console, home.home, METHOD_HEADINGS, list(home_rows(home)))
+        for note in home.notes:
+            console.print(f"Note: {note}", markup=False)
+
+
+def _print_over_homes(console: "Console", comparison: "Comparison") -> None:
+    from hemma.report.comparison_table import OVER_HOMES_HEADINGS, over_homes_rows
+
+    if comparison.over_homes:
+        title = "Mean over the homes that both folders share; the interval is about other homes"
+        _print_rows(console, title, OVER_HOMES_HEADINGS, list(over_homes_rows(comparison)))
+
+
+def _print_rows(console: "Console", title: str, headings: tuple[str, ...], rows: list) -> None:
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(*headings[:2], title=escape(title))
+    for heading in headings[2:]:
+        table.add_column(heading, justify="right")
+    last = ""
+    for row in rows:
+        if last and row.method != last:
+            table.add_section()
+        texts = [f"{cell.value}\n{cell.detail}".strip() for cell in row.cells]
+        table.add_row("" if row.method == last else escape(row.method), row.folder, *map(escape, texts))
+        last = row.method
+    console.print(table)
