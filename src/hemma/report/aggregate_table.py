@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from hemma.evaluation import summarise
 from hemma.report.findings import Aggregated, AggregateMethod
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, degrees, fine, hundredths, percent
@@ -42,7 +41,7 @@ def aggregate_table(results: Results) -> list[AggregateRow]:
 def _cells(results: Results, name: str, found: AggregateMethod) -> tuple[Cell, ...]:
     return (
         _cell(found.share_of_savings, percent, hundredths),
-        Cell(_other_homes(results, name)),
+        Cell(_range(found.share_of_savings.interval_over_homes)),
         Cell(percent(found.share_of_savings.interquartile_mean)),
         Cell(_worst(results, name)),
         _cell(found.gap_to_optimum, percent, hundredths),
@@ -58,11 +57,8 @@ def _cell(
     return Cell(full(found.mean), f"[{bare(found.interval[0])}, {bare(found.interval[1])}]")
 
 
-def _other_homes(results: Results, name: str) -> str:
-    """Interval of the mean share over homes drawn like these."""
-    homes = [home.methods[name].mean for home in results.finished.values() if name in home.methods]
-    interval = summarise([mean.share_of_savings for mean in homes]).interval
-    return DASH if interval is None else f"[{hundredths(interval.low)}, {hundredths(interval.high)}]"
+def _range(bounds: tuple[float, float] | None) -> str:
+    return DASH if bounds is None else f"[{hundredths(bounds[0])}, {hundredths(bounds[1])}]"
 
 
 def _worst(results: Results, name: str) -> str:

@@ -3,7 +3,7 @@
 import math
 
 from hemma.report.captions import Words
-from hemma.report.numbers import decimals, degrees, money, percent, plain
+from hemma.report.numbers import decimals, degrees, money, percent, rough
 from hemma.report.panels_curves import COST, Curves, Spread, spread_of
 from hemma.report.panels_homes import over_homes, shares_by_home
 from hemma.report.panels_improvement import Comparison
@@ -17,7 +17,7 @@ def words_of_pareto(home: HomeResults) -> Words:
         f"{m.name} {money(m.cost, home.currency)} at {degrees(m.deviation)}" for m in standings(home)
     )
     swept = "; ".join(
-        f"{sweep.name}, {parameter_name(point)} {plain(point.value)}: "
+        f"{sweep.name}, {parameter_name(point)} {rough(point.value)}: "
         f"{money(point.energy_cost, home.currency)} at {degrees(point.mean_temperature_deviation)}"
         for sweep in sweeps_of(home)
         for point in sweep.points

@@ -54,6 +54,11 @@ def seconds(value: float | None) -> str:
     return f"{decimals(value, 0 if abs(value) >= 9.95 else 1)}{SPACE}s"
 
 
+def rough(value: float) -> str:
+    """``0.151`` for 0.151476: three digits say enough of a value that was swept."""
+    return f"{value:.3g}".replace("-", "−")
+
+
 def plain(value: float) -> str:
     """``15`` for 15.0, ``0.5`` for 0.5."""
     return f"{value:g}".replace("-", "−")

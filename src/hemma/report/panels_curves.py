@@ -84,7 +84,7 @@ def learning_figure(home: HomeResults, curves: Curves) -> Figure | None:
         axes.set_yscale("symlog", linthresh=_LINEAR_BELOW)
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
         axes.yaxis.set_minor_locator(NullLocator())
-        axes.set_ylim(bottom=0.0)
+        axes.set_ylim(0.0, 1.6 * max([_LINEAR_BELOW, *_edges(deviations)]))
     below.supxlabel(SHARE_LABEL, fontsize=9.0)
     return figure
 
@@ -127,10 +127,15 @@ def _draw(axes: Axes, spreads: dict[str, Spread], name: str) -> None:
 
 def _limits(spreads: dict[str, Spread]) -> tuple[float, float]:
     """From the least to what 19 of 20 values stay below: the first iterations of a method may be far off."""
-    values = np.concatenate([edge for spread in spreads.values() for edge in (spread.low, spread.high)])
-    values = values[np.isfinite(values)]
+    values = _edges(spreads)
     if not len(values):
         return 0.0, 1.0
     low, high = float(np.min(values)), float(np.quantile(values, 0.95))
     margin = 0.1 * (high - low) or 0.5
     return low - margin, high + margin
+
+
+def _edges(spreads: dict[str, Spread]) -> np.ndarray:
+    """All ends of the ranges that are numbers: a learner may lose itself."""
+    values = np.concatenate([edge for spread in spreads.values() for edge in (spread.low, spread.high)])
+    return values[np.isfinite(values)]

@@ -13,7 +13,7 @@ from hemma.report.canvas import FAINT, INK, new_figure
 from hemma.report.findings import ParetoPoint
 from hemma.report.labels import Label, place_labels
 from hemma.report.methods import in_order, look_of
-from hemma.report.numbers import plain
+from hemma.report.numbers import plain, rough
 from hemma.report.results import HomeResults
 
 FRONTIER = "optimum"
@@ -42,7 +42,7 @@ class Sweep:
         if self.name == FRONTIER:
             return "proven least cost for each comfort"
         swept, values = parameter_name(self.points[0]), [p.value for p in self.points if p.value is not None]
-        span = f" from {plain(values[0])} to {plain(values[-1])}" if len(values) > 1 else ""
+        span = f" from {rough(values[0])} to {rough(values[-1])}" if len(values) > 1 else ""
         return f"{self.name}, {swept}{span}" if swept else self.name
 
 
@@ -170,7 +170,7 @@ def _name(
     """The names of the methods, and of each sweep the value at either end if it is among the costs."""
     ends = [
         Label(
-            f"{parameter_name(point)} {plain(point.value)}",
+            f"{parameter_name(point)} {rough(point.value)}",
             point.mean_temperature_deviation or 0.0,
             point.energy_cost or 0.0,
             look_of(sweep.name).colour,
