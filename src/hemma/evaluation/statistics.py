@@ -57,7 +57,8 @@ def summarise_homes(homes: Sequence[Sequence[float | None]], confidence: float =
     """One metric over several homes, each with its own runs; every home counts the same.
 
     The mean is that of the homes' means, and its interval says where the mean over *these* homes lies with
-    other seeds: the homes are strata, drawn once and for all. Variance and degrees of freedom (Welch,
+    other seeds: the homes are strata, drawn once and for all, and a seed that is bad on one home is not
+    taken to be bad on another. Variance and degrees of freedom (Welch,
     Satterthwaite) are, with n_h runs of standard deviation s_h on each of H homes,
 
         v = sum_h s_h^2/n_h / H^2,    nu = (sum_h s_h^2/n_h)^2 / sum_h (s_h^2/n_h)^2/(n_h-1).
