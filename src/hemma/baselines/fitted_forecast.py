@@ -12,8 +12,6 @@ from hemma.types import Array, Exogenous
 
 RIDGE = 0.01
 """Penalty on the squared weight of a feature of unit mean square, beside the mean square error."""
-LOOKS_BACK = 2
-"""Days of the past that serve as history only: no feature looks back further."""
 
 
 def fitted(outlook: Outlook) -> Exogenous:
@@ -28,7 +26,7 @@ def fitted(outlook: Outlook) -> Exogenous:
     dark; the selling price lies on the training period's line over the buying price. A past too short to
     learn from raises ``HemmaError``.
     """
-    needed = (LOOKS_BACK + 1) * outlook.day + outlook.ahead
+    needed = _history(outlook) + outlook.day + outlook.ahead
     if outlook.past.slots < needed:
         raise HemmaError(
             f"forecast: expected a past of at least {needed} slots to fit a forecast of {outlook.ahead}, got "
@@ -49,13 +47,22 @@ def fitted(outlook: Outlook) -> Exogenous:
     )
 
 
+def _history(outlook: Outlook) -> int:
+    """Slots that the features look back: a day and an hour."""
+    return outlook.day + _hour(outlook)
+
+
+def _hour(outlook: Outlook) -> int:
+    return max(round(1.0 / outlook.slot_length), 1)
+
+
 def _regression(outlook: Outlook, values: Float[Array, "joined"]) -> Float[np.ndarray, "slots horizon"]:
     values, times, asked = np.asarray(values), outlook.times(), outlook.targets()
-    past, day, hour = outlook.past.slots, outlook.day, max(round(1.0 / outlook.slot_length), 1)
+    past, day, hour = outlook.past.slots, outlook.day, _hour(outlook)
     bend = _bend(values[:past])
     level = profile(bend.bent(values[:past]), times[:past], day)
     z = bend.bent(values) - level[times[: len(values)]]
-    learned = targets(LOOKS_BACK * day, past - outlook.ahead + 1, outlook.ahead)
+    learned = targets(_history(outlook), past - outlook.ahead + 1, outlook.ahead)
     weights = _ridge(_features(z, learned, day, hour), z[learned])
     ahead = np.einsum("tkf,kf->tk", _features(z, asked, day, hour), weights) + level[times[asked]]
     lowest, highest = np.minimum.accumulate(values), np.maximum.accumulate(values)

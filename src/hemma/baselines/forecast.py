@@ -1,7 +1,7 @@
 """What a controller that knows the past alone believes of the hours to come, for every slot of a period."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax
 import numpy as np
@@ -81,14 +81,7 @@ class Outlook:
             return np.concatenate([np.asarray(truth, float)[:, None], forecast[:, 1:]], axis=1)
 
         known = jax.tree.map(present, ahead, self.period)
-        return Exogenous(
-            pv_generation=known.pv_generation,
-            load=known.load,
-            outdoor_temperature=known.outdoor_temperature,
-            buying_price=known.buying_price,
-            selling_price=known.selling_price,
-            hour_of_day=self.clock()[self.targets()],
-        )
+        return replace(known, hour_of_day=self.clock()[self.targets()])
 
 
 Forecaster = Callable[[Outlook], Exogenous]

@@ -78,20 +78,19 @@ def fit_thresholds(home: Home, exogenous: Exogenous) -> Thresholds:
     pair of prices. Candidates lie halfway between neighbours among all buying and selling prices of the
     period, and at -inf and inf (never), so nothing depends on currency or scale.
     """
+    line = fit_selling(exogenous)
+    u = np.asarray(exogenous.buying_price, float)
+    prices = _between(np.concatenate([u, np.asarray(line(u))]))
     with jax.enable_x64(True):
-        inside, exogenous = in_double((home, exogenous))
-        selling = in_double(fit_selling(exogenous))
+        inside, exogenous, selling = in_double((home, exogenous, line))
         demand = _comfort_demand(inside, exogenous)
-        u = np.asarray(exogenous.buying_price)
-        prices = _between(np.concatenate([u, np.asarray(selling(u))]))
 
         def bills(low: Ranks, high: Ranks) -> Float[np.ndarray, "low high"]:
-            rules = PriceRule(jnp.asarray(prices[low]), jnp.asarray(prices[high]), selling)
-            return np.asarray(_bills(inside, exogenous, demand, rules))
+            pairs = in_double((prices[low], prices[high]))
+            return np.asarray(_bills(inside, exogenous, demand, selling, *pairs))
 
         low, high = _search(bills, len(prices))
-    rule = PriceRule(float(prices[low]), float(prices[high]), fit_selling(exogenous))
-    return Thresholds(home, rule)
+    return Thresholds(home, PriceRule(float(prices[low]), float(prices[high]), line))
 
 
 def _between(prices: Float[np.ndarray, "values"]) -> Float[np.ndarray, "candidates"]:
@@ -109,13 +108,18 @@ def _comfort_demand(home: Home, exogenous: Exogenous) -> Float[Array, "slots"]:
 
 @eqx.filter_jit
 def _bills(
-    home: Home, exogenous: Exogenous, demand: Float[Array, "slots"], rules: PriceRule
+    home: Home,
+    exogenous: Exogenous,
+    demand: Float[Array, "slots"],
+    selling: SellingLine,
+    low: Float[Array, "low"],
+    high: Float[Array, "high"],
 ) -> Float[Array, "low high"]:
-    """Sum of X1 + X2 [currency] for every pair of the prices in ``rules``."""
+    """Sum of X1 + X2 [currency] for every pair of a price to charge below and one to discharge above."""
     battery, dt = home.battery, home.slot_length
 
-    def bill(low: Scalar, high: Scalar) -> Array:
-        rule = PriceRule(low, high, rules.selling)
+    def bill(low: Array, high: Array) -> Array:
+        rule = PriceRule(low, high, selling)
 
         def slot(energy: Array, inputs: tuple[Exogenous, Array]) -> tuple[Array, Array]:
             now, net_demand = inputs
@@ -126,7 +130,7 @@ def _bills(
         return jnp.sum(jax.lax.scan(slot, home.reset().battery_energy, (exogenous, demand))[1])
 
     across = jax.vmap(bill, in_axes=(None, 0))
-    return jax.vmap(across, in_axes=(0, None))(rules.charge_below, rules.discharge_above)
+    return jax.vmap(across, in_axes=(0, None))(low, high)
 
 
 def _search(bills: Callable[[Ranks, Ranks], Float[np.ndarray, "low high"]], candidates: int) -> Pair:
