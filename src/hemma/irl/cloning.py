@@ -1,0 +1,180 @@
+"""Behaviour cloning: regression of what the expert did on what it saw, with no home and no reward."""
+
+from dataclasses import dataclass, field
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import optax
+from jaxtyping import Bool, Float, Int
+
+from hemma.home.checks import require
+from hemma.rl.descent import begin, descend
+from hemma.rl.environment import Transitions
+from hemma.rl.exploration import falling
+from hemma.rl.policy import ACTIONS, GaussianPolicy
+from hemma.rl.task import Expert, Task
+from hemma.rl.training import CHUNK
+from hemma.types import Array
+
+
+@dataclass(frozen=True)
+class CloningSettings:
+    """Sizes and rates of behaviour cloning; where a value comes from stands in ``docs/paper.md``."""
+
+    iterations: int = 400
+    """Looks at the held-out days, a multiple of 25."""
+    steps: int = 10
+    """Adam steps an iteration."""
+    batch: int = 256
+    """Transitions a step."""
+    learning_rate: float = 3e-3
+    """Of Adam at first; it falls to a tenth."""
+    weight_decay: float = 1.0
+    """Of the weights of the battery's network, decoupled from the gradient."""
+    held_out: int = 5
+    """Every so many days one is held out, to say which iteration was the best."""
+    hidden: tuple[int, ...] = (64, 64)
+    """Units of the hidden layers of the battery's mean."""
+
+    def __post_init__(self):
+        """Refuse settings without meaning."""
+        whole = self.iterations >= CHUNK and self.iterations % CHUNK == 0
+        require("cloning", whole, f"iterations a multiple of {CHUNK}", self.iterations)
+        for name in ("steps", "batch"):
+            require("cloning", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
+        require("cloning", self.learning_rate > 0, "learning_rate > 0", self.learning_rate)
+        require("cloning", self.weight_decay >= 0, "weight_decay >= 0", self.weight_decay)
+        require("cloning", self.held_out >= 2, "held_out >= 2", self.held_out)
+        wide = all(width >= 1 for width in self.hidden)
+        require("cloning", wide, "hidden layers of at least 1 unit", self.hidden)
+
+
+class CloningState(eqx.Module):
+    """All that training carries from iteration to iteration."""
+
+    policy: GaussianPolicy
+    """As far as the regression has come."""
+    optimiser: optax.OptState
+    best: GaussianPolicy
+    """The best so far on the held-out days, battery and HVAC each by itself."""
+    best_loss: Float[Array, "*runs actions"]
+    """Its loss there."""
+    iteration: Int[Array, "*runs"]
+    key: Array
+
+
+class CloningProgress(eqx.Module):
+    """What one iteration tells about itself."""
+
+    training_loss: Float[Array, "*iterations"]
+    """Of the days that are learned from, battery and HVAC together."""
+    held_out_loss: Float[Array, "*iterations"]
+    """Of the days that are not."""
+    best_held_out_loss: Float[Array, "*iterations"]
+    """The lowest so far, of battery and HVAC each by itself, summed."""
+
+
+@dataclass(frozen=True)
+class BehaviourCloning:
+    """Least squares by minibatches, stopped where the held-out days say so."""
+
+    settings: CloningSettings = field(default_factory=CloningSettings)
+
+    @property
+    def iterations(self) -> int:
+        """How many iterations a training takes."""
+        return self.settings.iterations
+
+    def policy(self, state: CloningState) -> GaussianPolicy:
+        """The best so far on the held-out days."""
+        return state.best
+
+    def start(self, task: Task[Expert], key: Array) -> CloningState:
+        """A random policy."""
+        policy_key, key = jax.random.split(key)
+        policy = GaussianPolicy(self.settings.hidden, policy_key)
+        nothing = jnp.full(ACTIONS, jnp.inf)
+        return CloningState(policy, begin(self._method(), policy), policy, nothing, jnp.zeros((), int), key)
+
+    def iterate(self, state: CloningState, task: Task[Expert]) -> tuple[CloningState, CloningProgress]:
+        """``steps`` of Adam on minibatches, and a look at the held-out days."""
+        key, sample_key = jax.random.split(state.key)
+        expert, share = task.teacher, falling(state.iteration, self.settings.iterations)
+        learned, held = split_days(task, self.settings.held_out)
+
+        def step(carry, key: Array):
+            policy, optimiser = carry
+            rows = jax.random.randint(key, (self.settings.batch,), 0, expert.available)
+            batch = jax.tree.map(lambda x: x[rows], expert.transitions)
+            gradient = jax.grad(lambda p: jnp.sum(cloning_loss(p, batch, learned[rows])))(policy)
+            return descend(self._method(), gradient, optimiser, policy, share), None
+
+        keys = jax.random.split(sample_key, self.settings.steps)
+        (policy, optimiser), _ = jax.lax.scan(step, (state.policy, state.optimiser), keys)
+        held_loss = cloning_loss(policy, expert.transitions, held)
+        best = _better(state.best, policy, held_loss < state.best_loss)
+        best_loss = jnp.minimum(held_loss, state.best_loss)
+        training_loss = jnp.sum(cloning_loss(policy, expert.transitions, learned))
+        progress = CloningProgress(training_loss, jnp.sum(held_loss), jnp.sum(best_loss))
+        return CloningState(policy, optimiser, best, best_loss, state.iteration + 1, key), progress
+
+    def _method(self) -> optax.GradientTransformation:
+        decay = self.settings.weight_decay
+        return optax.adamw(self.settings.learning_rate, weight_decay=decay, mask=_decayed)
+
+
+def split_days(task: Task[Expert], every: int) -> tuple[Bool[Array, "samples"], Bool[Array, "samples"]]:
+    """Which transitions are learned from and which are held out: the last of ``every`` days in turn.
+
+    Whole days, because neighbouring hours tell each other's answer. Demonstrations of fewer days than
+    ``every`` are cut into that many parts instead.
+    """
+    expert = task.teacher
+    index = jnp.arange(expert.transitions.fractions.shape[0])
+    day = jnp.round(24 / task.environment.home.slot_length).astype(int)
+    part = jnp.maximum(jnp.minimum(day, expert.available // every), 1)
+    held = (index // part) % every == every - 1
+    shown = index < expert.available
+    return shown & ~held, shown & held
+
+
+def cloning_loss(
+    policy: GaussianPolicy, transitions: Transitions, counted: Bool[Array, "samples"]
+) -> Float[Array, "actions"]:
+    """Mean square of ``residual`` over the transitions that count, of battery and HVAC."""
+    means = jax.vmap(policy.mean)(transitions.features)
+    squares = jnp.where(counted[:, None], residual(means, transitions.fractions) ** 2, 0.0)
+    return jnp.sum(squares, axis=0) / jnp.maximum(jnp.sum(counted), 1)
+
+
+def residual(mean: Float[Array, "*batch actions"], shown: Float[Array, "*batch actions"]) -> Array:
+    """mu - a, where an action at a bound says only that the mean was there or beyond.
+
+    The expert's powers are bounded, the policy's mean is not: at a = 1 only min(mu - 1, 0) is an error, at
+    a = -1 only max(mu + 1, 0). This is the censored regression of Tobin 1958 with squares for likelihoods.
+    """
+    error = mean - shown
+    error = jnp.where(shown >= 1.0, jnp.minimum(error, 0.0), error)
+    return jnp.where(shown <= -1.0, jnp.maximum(error, 0.0), error)
+
+
+def _decayed(policy: GaussianPolicy) -> GaussianPolicy:
+    """Which leaves decay: the weights of the network. The affine part has no more freedom than the law."""
+    rest = jax.tree.map(lambda _: False, policy)
+    return eqx.tree_at(lambda t: t.network.weights, rest, tuple(True for _ in policy.network.weights))
+
+
+def _better(best: GaussianPolicy, policy: GaussianPolicy, improved: Bool[Array, "actions"]) -> GaussianPolicy:
+    """The parts of ``policy`` that improved, the rest of ``best``: battery and HVAC share no weights."""
+    battery = improved[0]
+    network = jax.tree.map(lambda b, p: jnp.where(battery, p, b), best.network, policy.network)
+    return eqx.tree_at(
+        lambda t: (t.network, t.linear, t.bias),
+        best,
+        (
+            network,
+            jnp.where(improved[:, None], policy.linear, best.linear),
+            jnp.where(improved, policy.bias, best.bias),
+        ),
+    )
