@@ -48,8 +48,8 @@ def test_another_version_of_hemma_makes_everything_anew(monkeypatch):
 
 def test_nested_settings_count():
     experiment = Experiment()
-    ppo = replace(experiment.airl.ppo, discount=0.9)
-    other = replace(experiment, airl=replace(experiment.airl, ppo=ppo))
+    ppo = replace(experiment.ppo, discount=0.9)
+    other = replace(experiment, ppo=ppo)
     assert fingerprint("train", experiment) != fingerprint("train", other)
 
 

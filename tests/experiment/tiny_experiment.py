@@ -6,11 +6,11 @@ from pathlib import Path
 from hemma.data import load_austin2021
 from hemma.experiment.progress import Silence
 from hemma.experiment.run import Job
-from hemma.experiment.settings import DataEfficiency, Experiment
+from hemma.experiment.settings import LEARNED, ComfortPrices, DataEfficiency, Experiment, ParetoSettings
 
 
 def tiny_experiment(iterations=50):
-    """Two seeds, two days of demonstrations, and one day for the data efficiency."""
+    """Two seeds, two days of demonstrations, and one day for the data efficiency; HA-1 alone is learned."""
     default = Experiment()
     ppo = replace(default.ppo, rollouts=4, slots=12, epochs=1, minibatches=2, hidden=(4,))
     airl = replace(
@@ -28,9 +28,26 @@ def tiny_experiment(iterations=50):
         airl=airl,
         ppo=ppo,
         identification=replace(default.identification, updates=20, chunk=10, window=6.0, batch=8, width=4),
+        learned=("HA-1",),
+        forecast_horizon=12.0,
+        pareto=ParetoSettings(relaxations=(0.5,), seeds=2),
         seeds=2,
         demonstration_days=2,
         data_efficiency=DataEfficiency(days=(1, 2, 60), seeds=2),
+    )
+
+
+def every_method():
+    """The same with all learned methods."""
+    experiment = tiny_experiment()
+    return replace(
+        experiment,
+        learned=LEARNED,
+        maxent=replace(experiment.maxent, iterations=25, windows=2, slots=12),
+        cloning=replace(experiment.cloning, iterations=25),
+        explicit=replace(experiment.explicit, iterations=25),
+        ddpg=replace(experiment.ddpg, iterations=25, steps=1),
+        comfort_price=ComfortPrices(multiples=(1.0, 4.0), seeds=1),
     )
 
 

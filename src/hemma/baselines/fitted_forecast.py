@@ -26,7 +26,7 @@ def fitted(outlook: Outlook) -> Exogenous:
     dark; the selling price lies on the training period's line over the buying price. A past too short to
     learn from raises ``HemmaError``.
     """
-    needed = _history(outlook) + outlook.day + outlook.ahead
+    needed = needed_past(outlook)
     if outlook.past.slots < needed:
         raise HemmaError(
             f"forecast: expected a past of at least {needed} slots to fit a forecast of {outlook.ahead}, got "
@@ -45,6 +45,11 @@ def fitted(outlook: Outlook) -> Exogenous:
             hour_of_day=outlook.clock()[outlook.targets()],
         )
     )
+
+
+def needed_past(outlook: Outlook) -> int:
+    """The shortest past [slots] that a forecast can be fitted to: history, and a day of examples."""
+    return _history(outlook) + outlook.day + outlook.ahead
 
 
 def _history(outlook: Outlook) -> int:

@@ -39,12 +39,16 @@ Settings = Annotated[
 ]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Results folder.")]
 Seeds = Annotated[
-    int | None, typer.Option("--seeds", help="Runs of HA-1 instead of the number in the settings.")
+    int | None,
+    typer.Option("--seeds", help="Runs of each learned method instead of the number in the settings."),
 ]
 Quick = Annotated[
-    bool, typer.Option("--quick", help="All stages in two minutes, too little training to quote.")
+    bool, typer.Option("--quick", help="All stages in a few minutes, too little training to quote.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print results.json instead of a table.")]
+Week = Annotated[
+    int, typer.Option("--week", help="Which week of the test period the time plots show, from 1.")
+]
 Folder = Annotated[Path, typer.Argument(help="Results folder of an earlier run.")]
 
 OUT = Path("results")
@@ -53,7 +57,7 @@ VERBS = {
     "reproduce": "Run everything: identify, demonstrate, baselines, train, evaluate, report.",
     "identify": "Identify the building and say how well the network predicts it.",
     "demonstrate": "Identify, and let the expert demonstrate on the first training days.",
-    "train": "Identify, demonstrate, and train HA-1.",
+    "train": "Identify, demonstrate, and train all learned methods.",
     "evaluate": "Everything but the report.",
 }
 """Each goes as far as its name and takes what an earlier command left in the folder."""
@@ -80,11 +84,11 @@ def register(app: typer.Typer) -> None:
     app.command()(settings)
 
 
-def report(folder: Folder = OUT) -> None:
+def report(folder: Folder = OUT, week: Week = 1) -> None:
     """Write the figures and the report of a results folder again."""
     from hemma.report import write_report
 
-    path = write_report(folder)
+    path = write_report(folder, week)
     print_table(folder)
     typer.echo(path)
 

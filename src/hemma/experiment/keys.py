@@ -11,7 +11,7 @@ from typing import Annotated, Any, Optional, get_args, get_origin, get_type_hint
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
-from hemma.experiment.settings import Experiment
+from hemma.experiment.settings import Experiment, ParetoSettings
 from hemma.expert.horizon import Horizon
 from hemma.expert.hvac import DescentSettings
 from hemma.expert.programme import SolverSettings
@@ -48,7 +48,12 @@ NAMES: dict[type, dict[str, str]] = {
 }
 """Parameters that have another name in the file than inside, mostly with the unit behind it."""
 
-ANY_SIGN = {(ComfortBand, "low"), (ComfortBand, "high"), (Experiment, "initial_temperature")}
+ANY_SIGN = {
+    (ComfortBand, "low"),
+    (ComfortBand, "high"),
+    (Experiment, "initial_temperature"),
+    (ParetoSettings, "relaxations"),
+}
 """Parameters that may be negative."""
 
 

@@ -13,6 +13,8 @@ from hemma.experiment.settings import Experiment
 from hemma.experiment.store import Store
 from hemma.experiment.train import Lesson
 from hemma.irl.airl import AdversarialImitation
+from hemma.irl.cloning import BehaviourCloning
+from hemma.irl.maxent import linear_maxent, neural_maxent
 from hemma.irl.reward import ImitationScore
 from hemma.rl import task
 from hemma.rl.improvement import Proximal
@@ -36,6 +38,11 @@ class Imitation:
     """Of its files, and of the stage."""
 
 
+def airl(experiment: Experiment) -> AdversarialImitation:
+    """The method of HA-1 and HA-2."""
+    return AdversarialImitation(experiment.airl, Proximal(experiment.ppo))
+
+
 def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, ...]:
     """The methods to run where the training period has so many days, HA-1 first.
 
@@ -43,23 +50,25 @@ def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, .
     """
     short = experiment.demonstration_days
     long = min(experiment.long_demonstration_days, training_days)
-    by_ppo = Proximal(experiment.ppo)
-    airl = AdversarialImitation(experiment.airl, by_ppo)
+    by_ppo, ours = Proximal(experiment.ppo), airl(experiment)
     known = (
-        ("HA-1", airl, short),
-        ("HA-2", airl, long),
+        ("HA-1", ours, short),
+        ("HA-2", ours, long),
         ("GAIL", AdversarialImitation(experiment.airl, by_ppo, ImitationScore), short),
+        ("MaxEnt IRL", linear_maxent(experiment.maxent, by_ppo), long),
+        ("MaxEnt IRL neural", neural_maxent(experiment.maxent, by_ppo), long),
+        ("BC", BehaviourCloning(experiment.cloning), short),
     )
     wanted = [
         Imitation(method, algorithm, days, experiment.seeds, method)
         for method, algorithm, days in known
         if method in experiment.learned
     ]
-    done = {one.days for one in wanted if one.algorithm == airl}
+    done = {one.days for one in wanted if one.algorithm == ours}
     efficiency = experiment.data_efficiency
     others = [days for days in efficiency.days if days not in done and days <= training_days]
     lengths = [
-        Imitation(ANY_LENGTH, airl, days, efficiency.seeds, f"{ANY_LENGTH}-{days}-days") for days in others
+        Imitation(ANY_LENGTH, ours, days, efficiency.seeds, f"{ANY_LENGTH}-{days}-days") for days in others
     ]
     return (*wanted, *lengths)
 

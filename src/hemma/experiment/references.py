@@ -1,57 +1,107 @@
-"""Stage: the methods that are not learned, from the thermostat to perfect information."""
+"""Stage: the methods that are not learned by trial, from the thermostat to perfect information."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 
 import jax
 
 from hemma.baselines.comfort import ComfortHold
+from hemma.baselines.joint import joint_hmpc
+from hemma.baselines.nonlinear import nonlinear_optimum
+from hemma.baselines.nonlinear_programme import casadi_is_installed
 from hemma.baselines.rule import Rule
+from hemma.baselines.thresholds import fit_thresholds
 from hemma.evaluation import evaluate
 from hemma.experiment.case import Case
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import fingerprint
 from hemma.experiment.judge import CODE, Judge, Played
+from hemma.experiment.planners import planners, played_by
 from hemma.experiment.results import MethodResults, PlainOptimum
 from hemma.home import Controller, Schedule
 
 STAGE = "baselines"
 
 
-def references(case: Case, judge: Judge, expert: Expert) -> tuple[MethodResults, ...]:
-    """Rule, no battery, the expert in hindsight on the test period, and the optimum."""
+@dataclass(frozen=True)
+class References:
+    """Measures the methods of this stage on one home."""
 
-    def controlled(controller: Callable[[], Controller]) -> Callable[[], Sequence[Played]]:
-        return lambda: [Played(evaluate(case.home, case.test, controller(), jax.random.key(0)))]
+    judge: Judge
+    expert: Expert
 
-    def optimum() -> Controller:
-        return Schedule(judge.problem.solve().actions)
+    def methods(self) -> tuple[MethodResults, ...]:
+        """All of them."""
+        return (*self._plain(), *self._planned(), *self._hindsight())
 
-    def hindsight() -> Controller:
-        return Schedule(expert.plan(case.test))
+    def _plain(self) -> tuple[MethodResults, ...]:
+        case = self._case
+        return (
+            self._result("Rule", self._mark, lambda: Rule(case.home.hvac, case.home.comfort)),
+            self._result("no battery", self._mark, lambda: ComfortHold(case.home)),
+            self._result(
+                "thresholds",
+                self.expert.mark,
+                lambda: fit_thresholds(self.expert.planning_home, case.training),
+            ),
+        )
 
-    def result(method: str, mark: str, controller: Callable[[], Controller]) -> MethodResults:
-        return MethodResults(method, judge.judged(method, mark, controlled(controller)))
+    def _planned(self) -> tuple[MethodResults, ...]:
+        """Every rolling planner, through the identified network: one plan a slot takes its time."""
+        wanted, progress = planners(self._case), self.judge.store.progress
+        progress.started(STAGE, len(wanted))
+        made = []
+        for done, planner in enumerate(wanted, start=1):
+            made.append(MethodResults(planner.method, played_by(planner, self.judge, self.expert)))
+            progress.advanced(STAGE, done, planner.method)
+        progress.finished(STAGE, f"{len(made)} rolling planners")
+        return tuple(made)
 
-    mark = fingerprint(STAGE, case.mark)
-    return (
-        result("Rule", mark, lambda: Rule(case.home.hvac, case.home.comfort)),
-        result("no battery", mark, lambda: ComfortHold(case.home)),
-        result("HMPC", expert.mark, hindsight),
-        result("optimum", mark, optimum),
-    )
+    def _hindsight(self) -> tuple[MethodResults, ...]:
+        case, expert, progress = self._case, self.expert, self.judge.store.progress
+        made = [
+            self._result("HMPC", expert.mark, lambda: Schedule(expert.plan(case.test))),
+            self._result("HMPC joint", expert.mark, self._joint),
+            self._result("optimum", self._mark, lambda: Schedule(self.judge.problem.solve().actions)),
+        ]
+        if not casadi_is_installed():
+            progress.noticed("DNLP is left out: it needs CasADi, pip install 'hemma[nlp]'")
+            return tuple(made)
+        dnlp = self._result(
+            "DNLP", self._mark, lambda: Schedule(nonlinear_optimum(case.home, case.test).actions)
+        )
+        return (*made, dnlp)
+
+    def _joint(self) -> Controller:
+        found = joint_hmpc(self.expert.planning_home, self._case.home, self._case.test)
+        return Schedule(found.steps.action)
+
+    @property
+    def _case(self) -> Case:
+        return self.judge.case
+
+    @property
+    def _mark(self) -> str:
+        return fingerprint(STAGE, self._case.mark)
+
+    def _result(self, method: str, mark: str, controller: Callable[[], Controller]) -> MethodResults:
+        def play() -> Sequence[Played]:
+            outcome = evaluate(self._case.home, self._case.test, controller(), jax.random.key(0))
+            return [Played(outcome)]
+
+        return MethodResults(method, self.judge.judged(method, mark, play))
 
 
-def plain_optimum(case: Case, judge: Judge) -> PlainOptimum:
+def plain_optimum(judge: Judge) -> PlainOptimum:
     """Perfect information with the least reachable deviation, and its proof."""
-    mark = fingerprint("optimum", CODE, case.mark)
+    mark = fingerprint("optimum", CODE, judge.case.mark)
     content = judge.store.kept("optimum", mark)
     if content is not None:
         return PlainOptimum(**content)
     found = judge.problem.solve()
     optimum = PlainOptimum(
         energy_cost=found.cost,
-        mean_temperature_deviation=found.deviation / case.test.slots,
+        mean_temperature_deviation=found.deviation / judge.case.test.slots,
         bound=found.bound,
         relative_gap=found.gap,
     )

@@ -9,9 +9,13 @@ from hemma.home.checks import require
 from hemma.identification.excitation import Excitation
 from hemma.identification.settings import IdentificationSettings
 from hemma.irl.airl import AIRLSettings
+from hemma.irl.cloning import CloningSettings
+from hemma.irl.maxent import MaxEntSettings
+from hemma.rl.ddpg import DDPGSettings
+from hemma.rl.explicit import ExplicitSettings
 from hemma.rl.ppo import PPOSettings
 
-LEARNED = ("HA-1", "HA-2", "GAIL")
+LEARNED = ("HA-1", "HA-2", "GAIL", "MaxEnt IRL", "MaxEnt IRL neural", "BC", "PPO", "DDPG")
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,47 @@ class DataEfficiency:
         require("data_efficiency", all(days >= 1 for days in self.days), "days of at least 1", self.days)
         require("data_efficiency", len(set(self.days)) == len(self.days), "different days", self.days)
         require("data_efficiency", self.seeds >= 1, "seeds >= 1", self.seeds)
+
+
+@dataclass(frozen=True)
+class ComfortPrices:
+    """How beta_T of the explicit reward is chosen: by a sweep on the training period."""
+
+    multiples: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0, 64.0)
+    """Values to try, in multiples of what the HVAC at full power costs in a slot of mean buying price."""
+    seeds: int = 2
+    """Runs of each."""
+    held_out: float = 0.25
+    """Share of the training period, its end, that the runs do not see and are judged on."""
+    tolerance: float = 0.02
+    """Largest mean deviation there that counts as comfort kept [degC]; the least regret among those wins."""
+
+    def __post_init__(self):
+        """Refuse values that cannot be."""
+        positive = bool(self.multiples) and all(value > 0 for value in self.multiples)
+        require("comfort_price", positive, "multiples > 0", self.multiples)
+        require("comfort_price", self.seeds >= 1, "seeds >= 1", self.seeds)
+        require("comfort_price", 0 < self.held_out < 1, "0 < held_out < 1", self.held_out)
+
+
+@dataclass(frozen=True)
+class ParetoSettings:
+    """Cost against comfort, for the report."""
+
+    relaxations: tuple[float, ...] = (-1.0, -0.5, 0.5, 1.0)
+    """Widenings of the expert's comfort band at the edge where energy is saved [degC]; empty: none."""
+    seeds: int = 2
+    """Runs of HA-1 with each."""
+
+    def __post_init__(self):
+        """Refuse values that cannot be."""
+        require(
+            "pareto",
+            len(set(self.relaxations)) == len(self.relaxations),
+            "different relaxations",
+            self.relaxations,
+        )
+        require("pareto", self.seeds >= 1, "seeds >= 1", self.seeds)
 
 
 @dataclass(frozen=True)
@@ -55,8 +100,17 @@ class Experiment:
     airl: AIRLSettings = field(default_factory=AIRLSettings)
     ppo: PPOSettings = field(default_factory=PPOSettings)
     """Of every policy that is improved by PPO."""
+    explicit: ExplicitSettings = field(default_factory=ExplicitSettings)
+    """Of PPO on the explicit reward."""
+    ddpg: DDPGSettings = field(default_factory=DDPGSettings)
+    maxent: MaxEntSettings = field(default_factory=MaxEntSettings)
+    cloning: CloningSettings = field(default_factory=CloningSettings)
+    comfort_price: ComfortPrices = field(default_factory=ComfortPrices)
+    pareto: ParetoSettings = field(default_factory=ParetoSettings)
+    forecast_horizon: float = 24.0
+    """How far ahead the rolling planners (MPC) look [h]."""
     learned: tuple[str, ...] = LEARNED
-    """Learned methods to run, of HA-1, HA-2, GAIL."""
+    """Learned methods to run, of HA-1, HA-2, GAIL, MaxEnt IRL, MaxEnt IRL neural, BC, PPO, DDPG."""
     seeds: int = 5
     """Runs of each learned method, with the seeds 0, 1, ..."""
     demonstration_days: int = 15
@@ -72,6 +126,7 @@ class Experiment:
             require(name, getattr(self, name) >= 1, "at least 1", getattr(self, name))
         unknown = [method for method in self.learned if method not in LEARNED]
         require("learned", not unknown, f"some of {', '.join(LEARNED)}", ", ".join(unknown))
+        require("forecast_horizon", self.forecast_horizon > 0, "hours > 0", self.forecast_horizon)
         require("pv", self.pv_scale >= 0, "scale >= 0", self.pv_scale)
 
     def home(self, slot_length: float) -> Home:
@@ -88,10 +143,16 @@ class Experiment:
 
 
 def quick(experiment: Experiment) -> Experiment:
-    """The same experiment in less than two minutes: every stage, but too little training to quote."""
+    """The same experiment in a few minutes: every stage, but too little training to quote."""
+    seeds = min(experiment.seeds, 2)
     return replace(
         experiment,
-        seeds=min(experiment.seeds, 2),
-        airl=replace(experiment.airl, iterations=min(experiment.airl.iterations, 400)),
-        data_efficiency=replace(experiment.data_efficiency, days=(3,), seeds=min(experiment.seeds, 2)),
+        seeds=seeds,
+        airl=replace(experiment.airl, iterations=min(experiment.airl.iterations, 200)),
+        maxent=replace(experiment.maxent, iterations=min(experiment.maxent.iterations, 100)),
+        explicit=replace(experiment.explicit, iterations=min(experiment.explicit.iterations, 100)),
+        ddpg=replace(experiment.ddpg, iterations=min(experiment.ddpg.iterations, 100)),
+        comfort_price=replace(experiment.comfort_price, multiples=(1.0, 16.0), seeds=1),
+        data_efficiency=replace(experiment.data_efficiency, days=(3,), seeds=seeds),
+        pareto=replace(experiment.pareto, relaxations=(0.5,), seeds=seeds),
     )

@@ -35,6 +35,11 @@ class StateScaler(eqx.Module):
         quantities = jnp.where(SPIKY, jnp.arcsinh(scaled), scaled)
         return jnp.concatenate([quantities, jnp.sin(angle)[..., None], jnp.cos(angle)[..., None]], axis=-1)
 
+    def quantities(self, features: Float[Array, "*batch 8"]) -> Float[Array, "*batch 6"]:
+        """The inverse: (p, l, E, T_out, T_in, u) in their units."""
+        scaled = features[..., :HOUR]
+        return self.centre + self.spread * jnp.where(SPIKY, jnp.sinh(scaled), scaled)
+
 
 def fit_scaler(states: Float[np.ndarray, "samples 7"]) -> StateScaler:
     """Scaler of the given states, shape (samples, 7), in their units.

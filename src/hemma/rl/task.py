@@ -1,5 +1,6 @@
 """What one training run learns from: a home and its own days, a teacher, and a seed."""
 
+import zlib
 from collections.abc import Sequence
 from typing import Generic, TypeVar
 
@@ -64,6 +65,14 @@ class Task(eqx.Module, Generic[Teacher]):
     environment: Environment
     teacher: Teacher
     seed: Int[Array, "*runs"]
+    stream: Int[Array, "*runs"]
+    """Digest of the traces: the same seed draws other numbers in other homes, so that homes are independent
+    samples."""
+
+    @property
+    def key(self) -> Array:
+        """Where all randomness of one run comes from."""
+        return jax.random.fold_in(jax.random.key(self.seed), self.stream)
 
 
 def make_task(home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed: int) -> Task[Expert]:
@@ -85,7 +94,7 @@ def make_task(home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed
         next_features=scaler(jnp.asarray(demonstrated.next_states, float)),
     )
     expert = Expert(transitions, jnp.asarray(len(demonstrated.actions)))
-    return Task(_environment(home, exogenous, scaler), expert, jnp.asarray(seed))
+    return Task(_environment(home, exogenous, scaler), expert, jnp.asarray(seed), _stream(exogenous))
 
 
 def explicit_task(home: Home, exogenous: Exogenous, comfort_price: float, seed: int) -> Task[ExplicitReward]:
@@ -108,7 +117,7 @@ def explicit_task(home: Home, exogenous: Exogenous, comfort_price: float, seed: 
     )
     scaler = fit_scaler(np.stack([np.asarray(column, float) for column in columns], axis=1))
     reward = ExplicitReward(jnp.asarray(comfort_price, float))
-    return Task(_environment(home, exogenous, scaler), reward, jnp.asarray(seed))
+    return Task(_environment(home, exogenous, scaler), reward, jnp.asarray(seed), _stream(exogenous))
 
 
 def stack(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
@@ -127,6 +136,11 @@ def _environment(home: Home, exogenous: Exogenous, scaler: StateScaler) -> Envir
     traces = jax.tree.map(lambda x: jnp.asarray(x, float), exogenous)
     home = jax.tree.map(lambda x: jnp.asarray(x, float), home)
     return Environment(home, traces, jnp.asarray(exogenous.slots), scaler)
+
+
+def _stream(exogenous: Exogenous) -> Int[Array, ""]:
+    digest = zlib.crc32(np.ascontiguousarray(exogenous.load, np.float64).tobytes())
+    return jnp.asarray(digest, jnp.uint32)
 
 
 def _pad(leaf: Array, length: int) -> Array:

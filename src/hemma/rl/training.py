@@ -150,7 +150,7 @@ def _side_by_side(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Cu
 
 @partial(jax.jit, static_argnames="algorithm")
 def _start(task: Task, algorithm: Algorithm) -> Any:
-    return jax.vmap(lambda t: algorithm.start(t, jax.random.key(t.seed)))(task)
+    return jax.vmap(lambda t: algorithm.start(t, t.key))(task)
 
 
 @partial(jax.jit, static_argnames="algorithm")

@@ -1,0 +1,116 @@
+"""Stage: the methods that learn from the explicit reward, its beta_T chosen on the training days."""
+
+from dataclasses import dataclass
+
+import jax
+import numpy as np
+
+from hemma.baselines.optimum import optimum_problem
+from hemma.errors import HemmaError
+from hemma.evaluation import evaluate_stacked
+from hemma.experiment.case import Case
+from hemma.experiment.fingerprint import code, fingerprint
+from hemma.experiment.settings import Experiment
+from hemma.experiment.store import Store
+from hemma.experiment.train import Lesson, Trained, train_lesson
+from hemma.rl.ddpg import DDPG
+from hemma.rl.explicit import ExplicitLearning, choose_comfort_price, comfort_prices
+from hemma.rl.improvement import Proximal
+from hemma.rl.task import explicit_task, stack
+from hemma.types import Exogenous
+
+STAGE = "comfort price"
+LABEL = "PPO-sweep"
+METHODS = ("PPO", "DDPG")
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """PPO trained with several beta_T on the first part of the training period, judged on the rest."""
+
+    lesson: Lesson
+    trained: Trained
+    prices: tuple[float, ...]
+    """beta_T of each run [currency/degC for one slot]."""
+    chosen: float
+    """The one that fares best on the days that the runs did not see."""
+
+
+def wants_explicit(experiment: Experiment) -> bool:
+    """Whether a method of this stage is asked for."""
+    return any(method in experiment.learned for method in METHODS)
+
+
+def sweep_comfort_price(case: Case, store: Store) -> Sweep:
+    """Train PPO with each beta_T, and choose one by regret and deviation on the held-out training days."""
+    settings, seen = case.experiment.comfort_price, case.first_days(_seen_days(case))
+    values = comfort_prices(case.home, seen, settings.multiples)
+    prices = [float(value) for value in values for _ in range(settings.seeds)]
+    seeds = [seed for _ in values for seed in range(settings.seeds)]
+    pairs = zip(prices, seeds, strict=True)
+    task = stack([explicit_task(case.home, seen, price, seed) for price, seed in pairs])
+    lesson = Lesson(LABEL, _ppo(case.experiment), task, fingerprint(STAGE, case.mark, settings))
+    trained = train_lesson(lesson, store)
+    chosen = _chosen(case, store, trained, np.asarray(prices))
+    return Sweep(lesson, trained, tuple(prices), chosen)
+
+
+def explicit_lessons(case: Case, comfort_price: float) -> tuple[Lesson, ...]:
+    """PPO and DDPG, as far as they are asked for, on the whole training period."""
+    experiment, days = case.experiment, case.first_days(case.training_days)
+    seeds = range(experiment.seeds)
+    task = stack([explicit_task(case.home, days, comfort_price, seed) for seed in seeds])
+    basis = fingerprint("explicit", case.mark, comfort_price)
+    algorithms = (("PPO", _ppo(experiment)), ("DDPG", DDPG(experiment.ddpg)))
+    wanted = [(method, algorithm) for method, algorithm in algorithms if method in experiment.learned]
+    return tuple(Lesson(method, algorithm, task, basis) for method, algorithm in wanted)
+
+
+def _seen_days(case: Case) -> int:
+    """How many of the training days the runs of the sweep learn from; the others judge them."""
+    if case.training_days < 2:
+        raise HemmaError(
+            f"{case.name}: expected a training period of at least 2 days to choose beta_T of PPO and DDPG, "
+            f"got {case.training_days}; give longer traces, or leave both out of the setting `learned`"
+        )
+    wanted = round(case.training_days * (1 - case.experiment.comfort_price.held_out))
+    return min(max(wanted, 1), case.training_days - 1)
+
+
+def _ppo(experiment: Experiment) -> ExplicitLearning:
+    return ExplicitLearning(experiment.explicit, Proximal(experiment.ppo))
+
+
+def _chosen(case: Case, store: Store, trained: Trained, prices: np.ndarray) -> float:
+    """beta_T by the mean regret and deviation of its runs on the training days that they did not see."""
+    mark = fingerprint(STAGE, code("rl", "baselines", "expert", "evaluation"), trained.mark)
+    content = store.kept("comfort-price", mark)
+    if content is not None:
+        return content["chosen"]
+    settings = case.experiment.comfort_price
+    held_out = case.training.window(case.first_days(_seen_days(case)).slots, case.training.slots)
+    regrets, deviations = _judged(case, trained, held_out)
+    values = np.asarray(list(dict.fromkeys(prices.tolist())))
+    shape = (len(values), settings.seeds)
+    mean_regrets, mean_deviations = (x.reshape(shape).mean(axis=1) for x in (regrets, deviations))
+    chosen = choose_comfort_price(values, mean_regrets, mean_deviations, settings.tolerance)
+    table = {
+        "comfort_price": values.tolist(),
+        "regret": mean_regrets.tolist(),
+        "mean_temperature_deviation": mean_deviations.tolist(),
+    }
+    store.keep("comfort-price", mark, [], {"chosen": chosen, "sweep": table})
+    return chosen
+
+
+def _judged(case: Case, trained: Trained, days: Exogenous) -> tuple[np.ndarray, np.ndarray]:
+    """Regret at equal comfort [currency] and mean deviation [degC] of each run on ``days``."""
+    problem = optimum_problem(case.home, days)
+    runs = trained.controllers.scaler.centre.shape[0]
+    keys = jax.random.split(jax.random.key(0), runs)
+    outcomes = evaluate_stacked(case.home, days, trained.controllers, keys)
+    regrets = [
+        float(np.sum(outcome.cost)) - problem.solve(outcome.total_deviation).cost for outcome in outcomes
+    ]
+    deviations = [float(np.mean(outcome.temperature_deviation)) for outcome in outcomes]
+    return np.asarray(regrets), np.asarray(deviations)

@@ -1,0 +1,121 @@
+"""All stages of one home, in their order; the results file grows with each."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum, auto
+from functools import partial
+
+from hemma.experiment.case import Case, empty_results
+from hemma.experiment.demonstrate import Expert
+from hemma.experiment.explicit import Sweep, explicit_lessons, sweep_comfort_price, wants_explicit
+from hemma.experiment.identify import identify
+from hemma.experiment.judge import Judge
+from hemma.experiment.ledger import Ledger
+from hemma.experiment.lessons import ANY_LENGTH, imitations, lessons
+from hemma.experiment.pareto import Pareto
+from hemma.experiment.play import play
+from hemma.experiment.references import References, plain_optimum
+from hemma.experiment.regrets import split_regrets
+from hemma.experiment.results import HomeResults, MethodResults, Run
+from hemma.experiment.store import Store
+from hemma.experiment.train import Lesson, train_lesson
+
+LENGTHS = ("HA-1", "HA-2", ANY_LENGTH)
+"""One method at several lengths of the demonstrations."""
+
+
+class Stage(IntEnum):
+    """How far to go; each stage needs those before it."""
+
+    IDENTIFY = auto()
+    DEMONSTRATE = auto()
+    TRAIN = auto()
+    EVALUATE = auto()
+    REPORT = auto()
+
+
+@dataclass(frozen=True)
+class Learned:
+    """A learned method on its way into the results."""
+
+    method: str
+    lesson: Lesson
+    days: int | None = None
+    """Length of the demonstrations."""
+
+
+@dataclass(frozen=True)
+class HomeRun:
+    """All stages of one home."""
+
+    case: Case
+    store: Store
+    ledger: Ledger
+
+    def up_to(self, last: Stage) -> None:
+        """Run the stages, as far as ``last``."""
+        results = empty_results(self.case)
+        identification = identify(self.case, self.store)
+        results = self._put(replace(results, identification=identification.found))
+        if last is Stage.IDENTIFY:
+            return
+        expert = Expert(self.case, identification)
+        imitating = self._imitating(expert)
+        if last is Stage.DEMONSTRATE:
+            return
+        if last is Stage.TRAIN:
+            for learned in (*imitating, *self._paid()[1]):
+                train_lesson(learned.lesson, self.store)
+            return
+        self._measure(results, expert, imitating)
+
+    def _imitating(self, expert: Expert) -> list[Learned]:
+        """The methods that learn from demonstrations."""
+        wanted = imitations(self.case.experiment, self.case.training_days)
+        made = lessons(self.case, expert, self.store, wanted)
+        return [Learned(one.method, lesson, one.days) for one, lesson in zip(wanted, made, strict=True)]
+
+    def _paid(self) -> tuple[Sweep | None, list[Learned]]:
+        """The methods that learn from the explicit reward, and the sweep that set its beta_T."""
+        if not wants_explicit(self.case.experiment):
+            return None, []
+        sweep = sweep_comfort_price(self.case, self.store)
+        made = explicit_lessons(self.case, sweep.chosen)
+        return sweep, [Learned(lesson.label, lesson) for lesson in made]
+
+    def _measure(self, results: HomeResults, expert: Expert, imitating: Sequence[Learned]) -> None:
+        """Baselines first, since they are quick; then each lesson, measured as soon as it is trained."""
+        judge = Judge(self.case, self.store)
+        judge.write_exogenous()
+        methods = References(judge, expert).methods()
+        optimum = plain_optimum(judge)
+        results = self._put(replace(results, methods=methods, optimum=optimum))
+        for learned in imitating:
+            results = self._learned(results, judge, learned)
+        sweep, paid = self._paid()
+        for learned in paid:
+            results = self._learned(results, judge, learned)
+        results = self._put(replace(results, regret=split_regrets(judge, results.methods)))
+        points = Pareto(judge).points(expert, sweep, results.methods)
+        self._put(replace(results, pareto=points))
+
+    def _learned(self, results: HomeResults, judge: Judge, learned: Learned) -> HomeResults:
+        lesson = learned.lesson
+        trained = train_lesson(lesson, self.store)
+        runs = judge.judged(lesson.label, trained.mark, partial(play, self.case, lesson, trained))
+        return self._put(_with(results, learned, runs))
+
+    def _put(self, results: HomeResults) -> HomeResults:
+        self.ledger.put(results)
+        return results
+
+
+def _with(results: HomeResults, learned: Learned, runs: tuple[Run, ...]) -> HomeResults:
+    """The results with those of one more method; HA-1 and HA-2 are points of the data efficiency as well."""
+    if learned.method != ANY_LENGTH:
+        method = MethodResults(learned.method, runs, learned.days)
+        results = replace(results, methods=(*results.methods, method))
+    if learned.method not in LENGTHS:
+        return results
+    lengths = (*results.data_efficiency, MethodResults(ANY_LENGTH, runs, learned.days))
+    return replace(results, data_efficiency=tuple(sorted(lengths, key=lambda length: length.days or 0)))
