@@ -10,6 +10,8 @@ from scipy.sparse import csr_array
 from hemma.errors import HemmaError
 from hemma.types import Scalar
 
+PRIMAL_SIMPLEX = 4
+"""HiGHS's number for it."""
 FEASIBILITY = 1e-9
 """How far the solver may break a constraint or a reduced cost; the replay forgives no more than this."""
 
@@ -96,6 +98,11 @@ class Programme:
         solver = _solver(settings)
         solver.passModel(_model(columns, rows, matrix))
         solver.run()
+        if solver.getModelStatus() == highspy.HighsModelStatus.kSolveError:
+            # The dual simplex sometimes gives up on long quarter-hour months; the primal one does not.
+            solver.clearSolver()
+            solver.setOptionValue("simplex_strategy", PRIMAL_SIMPLEX)
+            solver.run()
         status, info = solver.getModelStatus(), solver.getInfo()
         if info.primal_solution_status != highspy.SolutionStatus.kSolutionStatusFeasible:
             raise HemmaError(_no_solution(status, solver, settings))
