@@ -57,6 +57,12 @@ def test_the_rule_by_hand(price, demand, expected):
     assert float(e) == pytest.approx(expected, abs=1e-6)
 
 
+def test_where_selling_is_dearer_than_buying_the_cheap_energy_is_taken_first():
+    rule = PriceRule(charge_below=0.11, discharge_above=0.20, selling=SellingLine(0.0, 0.3))
+    e = rule.battery_power(Battery(), jnp.asarray(3.0), jnp.asarray(1.0), jnp.asarray(0.1), slot_length=1.0)
+    assert float(e) == pytest.approx(3.0)
+
+
 def two_prices(low: float, high: float, ratio: float = 0.9) -> Exogenous:
     exogenous = periodic(6)
     u = np.where((exogenous.hour_of_day >= 14) & (exogenous.hour_of_day < 20), high, low)
