@@ -62,7 +62,7 @@ def test_mistakes(hemma, folders, tmp_path, monkeypatch, words, part):
 
 def test_the_results_of_several_homes_end_with_a_table_over_all(hemma, folders, monkeypatch):
     """Printed by every command that shows results; here `hemma report`, its figures left out."""
-    monkeypatch.setattr(report, "write_report", lambda folder: folder / "report.html")
+    monkeypatch.setattr(report, "write_report", lambda folder, week: folder / "report.html")
     status, out, _ = hemma("report", folders[0])
     assert status == 0
     place = [out.index(text) for text in ("home-1: mean", "home-2: mean", "All 2 homes: mean")]

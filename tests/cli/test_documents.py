@@ -46,7 +46,8 @@ def test_numbers_of_the_defaults_are_right():
     default, fast = Experiment(), quick(Experiment())
     assert f"{default.seeds} by default" in TEXT
     assert f"first {default.demonstration_days} days" in TEXT
-    others = [days for days in DataEfficiency().days if days != default.demonstration_days]
-    *first, last = map(str, others)
+    assert f"first {default.long_demonstration_days} days" in TEXT
+    mains = (default.demonstration_days, default.long_demonstration_days)
+    *first, last = [str(days) for days in DataEfficiency().days if days not in mains]
     assert f"from {', '.join(first)} and {last} days" in TEXT
     assert f"{fast.seeds} seeds, {fast.airl.iterations} iterations" in TEXT

@@ -51,11 +51,11 @@ def test_a_round_trip_keeps_every_digit(tmp_path_factory, max_energy, low, seeds
 
 
 def test_units_stand_in_the_names_and_only_what_is_given_changes(tmp_path):
-    text = "battery:\n  max_energy_kwh: 13.5\ncomfort: {high_c: 25}\nairl: {ppo: {discount: 0.9}}\n"
+    text = "battery:\n  max_energy_kwh: 13.5\ncomfort: {high_c: 25}\nppo: {discount: 0.9}\n"
     experiment = read_settings(written(tmp_path, text))
     assert experiment.battery == Battery(max_energy=13.5)
     assert experiment.comfort == ComfortBand(high=25.0)
-    assert experiment.airl.ppo.discount == 0.9
+    assert experiment.ppo.discount == 0.9
     assert experiment.identification == Experiment().identification
 
 
@@ -66,7 +66,7 @@ def test_units_stand_in_the_names_and_only_what_is_given_changes(tmp_path):
         ("battery: {max_energy: 5}", r"battery\.max_energy: unknown key; did you mean max_energy_kwh"),
         ("xyzzy: blue", r"xyzzy: unknown key; the keys there are battery"),
         ("battery: {max_energy_kwh: -2}", r"battery\.max_energy_kwh: .*greater than or equal to 0, got -2"),
-        ("airl: {ppo: {learning_rate: -1}}", r"airl\.ppo\.learning_rate: .*greater than or equal to 0"),
+        ("ppo: {learning_rate: -1}", r"ppo\.learning_rate: .*greater than or equal to 0"),
         ("battery: {min_energy_kwh: 7}", r"battery: expected max_energy >= min_energy"),
         ("comfort: {high_c: .nan}", r"comfort\.high_c: .*finite"),
         ("comfort: {high_c: warm}", r"comfort\.high_c: .*valid number.*got 'warm'"),

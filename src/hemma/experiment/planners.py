@@ -47,21 +47,27 @@ def planners(case: Case) -> tuple[Planner, ...]:
 def played_by(planner: Planner, judge: Judge, expert: Expert) -> tuple[Run, ...]:
     """Its run on the test period, planning through the identified network."""
     mark = fingerprint(STAGE, expert.mark, judge.case.experiment.forecast_horizon)
-    return judge.judged(planner.method, mark, lambda: _play(planner, judge.case, expert.planning_home))
+    return _judged(planner, judge, mark, expert.planning_home, planner.method)
 
 
 def played_with_true_model(planner: Planner, judge: Judge) -> tuple[Run, ...]:
     """The same, planning through the thermal model of the simulated home: nobody could, it splits regret."""
     case = judge.case
     mark = fingerprint(STAGE, case.mark, case.experiment.forecast_horizon)
-    label = f"{planner.method} with the true model"
-    return judge.judged(label, mark, lambda: _play(planner, case, case.home))
+    return _judged(planner, judge, mark, case.home, f"{planner.method} with the true model")
 
 
-def _play(planner: Planner, case: Case, planning_home: Home) -> Sequence[Played]:
-    path = rolling_mpc(planning_home, case.home, case.test, planner.forecaster(_outlook(case)))
-    outcome = evaluate(case.home, case.test, Schedule(path.steps.action), jax.random.key(0))
-    return [Played(outcome)]
+def _judged(planner: Planner, judge: Judge, mark: str, planning_home: Home, label: str) -> tuple[Run, ...]:
+    case, progress = judge.case, judge.store.progress
+
+    def play() -> Sequence[Played]:
+        progress.started(label, 1)
+        path = rolling_mpc(planning_home, case.home, case.test, planner.forecaster(_outlook(case)))
+        progress.finished(label, f"{case.test.slots} plans")
+        outcome = evaluate(case.home, case.test, Schedule(path.steps.action), jax.random.key(0))
+        return [Played(outcome)]
+
+    return judge.judged(label, mark, play)
 
 
 def _outlook(case: Case) -> Outlook:

@@ -47,15 +47,11 @@ class References:
         )
 
     def _planned(self) -> tuple[MethodResults, ...]:
-        """Every rolling planner, through the identified network: one plan a slot takes its time."""
-        wanted, progress = planners(self._case), self.judge.store.progress
-        progress.started(STAGE, len(wanted))
-        made = []
-        for done, planner in enumerate(wanted, start=1):
-            made.append(MethodResults(planner.method, played_by(planner, self.judge, self.expert)))
-            progress.advanced(STAGE, done, planner.method)
-        progress.finished(STAGE, f"{len(made)} rolling planners")
-        return tuple(made)
+        """Every rolling planner, through the identified network."""
+        return tuple(
+            MethodResults(planner.method, played_by(planner, self.judge, self.expert))
+            for planner in planners(self._case)
+        )
 
     def _hindsight(self) -> tuple[MethodResults, ...]:
         case, expert, progress = self._case, self.expert, self.judge.store.progress

@@ -24,7 +24,7 @@ class DataEfficiency:
 
     days: tuple[int, ...] = (1, 3, 7, 15, 30, 60)
     """Lengths, each from the first training day on; those longer than the training period are left out."""
-    seeds: int = 3
+    seeds: int = 2
     """Runs of each length."""
 
     def __post_init__(self):
@@ -40,7 +40,7 @@ class ComfortPrices:
 
     multiples: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0, 64.0)
     """Values to try, in multiples of what the HVAC at full power costs in a slot of mean buying price."""
-    seeds: int = 2
+    seeds: int = 1
     """Runs of each."""
     held_out: float = 0.25
     """Share of the training period, its end, that the runs do not see and are judged on."""
@@ -59,9 +59,9 @@ class ComfortPrices:
 class ParetoSettings:
     """Cost against comfort, for the report."""
 
-    relaxations: tuple[float, ...] = (-1.0, -0.5, 0.5, 1.0)
+    relaxations: tuple[float, ...] = (-0.5, 0.5, 1.0)
     """Widenings of the expert's comfort band at the edge where energy is saved [degC]; empty: none."""
-    seeds: int = 2
+    seeds: int = 1
     """Runs of HA-1 with each."""
 
     def __post_init__(self):
@@ -107,11 +107,11 @@ class Experiment:
     cloning: CloningSettings = field(default_factory=CloningSettings)
     comfort_price: ComfortPrices = field(default_factory=ComfortPrices)
     pareto: ParetoSettings = field(default_factory=ParetoSettings)
-    forecast_horizon: float = 24.0
+    forecast_horizon: float = 36.0
     """How far ahead the rolling planners (MPC) look [h]."""
     learned: tuple[str, ...] = LEARNED
     """Learned methods to run, of HA-1, HA-2, GAIL, MaxEnt IRL, MaxEnt IRL neural, BC, PPO, DDPG."""
-    seeds: int = 5
+    seeds: int = 3
     """Runs of each learned method, with the seeds 0, 1, ..."""
     demonstration_days: int = 15
     """Days of demonstrations of HA-1, GAIL and BC, the first of the training period."""

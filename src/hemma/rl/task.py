@@ -8,7 +8,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float, Int, UInt
 
 from hemma.errors import HemmaError
 from hemma.home import Home
@@ -65,7 +65,7 @@ class Task(eqx.Module, Generic[Teacher]):
     environment: Environment
     teacher: Teacher
     seed: Int[Array, "*runs"]
-    stream: Int[Array, "*runs"]
+    stream: UInt[Array, "*runs"]
     """Digest of the traces: the same seed draws other numbers in other homes, so that homes are independent
     samples."""
 
@@ -138,7 +138,7 @@ def _environment(home: Home, exogenous: Exogenous, scaler: StateScaler) -> Envir
     return Environment(home, traces, jnp.asarray(exogenous.slots), scaler)
 
 
-def _stream(exogenous: Exogenous) -> Int[Array, ""]:
+def _stream(exogenous: Exogenous) -> UInt[Array, ""]:
     digest = zlib.crc32(np.ascontiguousarray(exogenous.load, np.float64).tobytes())
     return jnp.asarray(digest, jnp.uint32)
 
