@@ -221,3 +221,8 @@ def test_unreachable_comfort_is_planned_with_the_least_deviation_and_refused_bel
     assert found.deviation == pytest.approx(problem.least_deviation, abs=1e-6)
     with pytest.raises(HemmaError, match="least this home can reach"):
         problem.solve(problem.least_deviation - 0.1)
+
+
+def test_a_quarter_hour_month_on_which_the_dual_simplex_gives_up_is_solved():
+    found = optimum_problem(benchmark_home(0.25), traces(744, 1, 34.0)).solve()
+    assert found.cost == pytest.approx(found.bound, rel=1e-6)
