@@ -97,7 +97,7 @@ class Progress(eqx.Module):
 
 @dataclass(frozen=True)
 class AdversarialImitation:
-    """Algorithm 1. Its arguments make it AIRL by PPO (the paper), AIRL by analytic gradient, or GAIL."""
+    """Algorithm 1. Its arguments make it AIRL by PPO (the paper), or GAIL."""
 
     settings: AIRLSettings = field(default_factory=AIRLSettings)
     improvement: Improvement = field(default_factory=Proximal)
