@@ -14,7 +14,7 @@ from jaxtyping import Float, Int
 
 from hemma.home import HomeState
 from hemma.home.checks import require
-from hemma.irl.maxent_rewards import Comparison, LearnedReward, LinearMaxEnt, NeuralMaxEnt, RewardLearner
+from hemma.irl.maxent_rewards import Comparison, LinearMaxEnt, NeuralMaxEnt, RewardLearner
 from hemma.irl.reward_features import ENERGY, INDOOR
 from hemma.rl.actions import to_power
 from hemma.rl.environment import Environment, Transitions
@@ -56,8 +56,8 @@ class MaxEntState(eqx.Module):
 
     learner: Any
     """pi_n and what its improvement carries on."""
-    learned: LearnedReward
-    """r_n."""
+    learned: Any
+    """r_n and what its learner carries on."""
     average: GaussianPolicy
     """Exponential moving average of the policy's weights."""
     iteration: Int[Array, "*runs"]

@@ -1,12 +1,13 @@
 """The two rewards of maximum-entropy inverse reinforcement learning, and how each learns."""
 
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import optax
+from jaxtyping import Int
 
 from hemma.home.checks import require
 from hemma.irl.discriminator import gradient_penalty
@@ -16,16 +17,6 @@ from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions
 from hemma.rl.task import Expert
 from hemma.types import Array
-
-Kind = TypeVar("Kind")
-
-
-class LearnedReward(eqx.Module, Generic[Kind]):
-    """A reward under way."""
-
-    reward: Kind
-    optimiser: optax.OptState
-    """Of the neural reward; the linear one needs none."""
 
 
 class Comparison(eqx.Module):
@@ -37,17 +28,36 @@ class Comparison(eqx.Module):
 
 @runtime_checkable
 class RewardLearner(Protocol):
-    """A family of rewards r_w and a rule to climb E_expert[r_w] - E_agent[r_w]."""
+    """A family of rewards r_w and a rule to climb E_expert[r_w] - E_agent[r_w].
 
-    def start(self, expert: Expert, discount: float, key: Array) -> LearnedReward[Any]:
+    What it carries from step to step has a ``reward``, and that has ``batch(transitions)``.
+    """
+
+    def start(self, expert: Expert, discount: float, key: Array) -> Any:
         """r before the first comparison; ``discount`` is gamma."""
         ...
 
-    def improve(
-        self, learned: LearnedReward[Any], comparison: Comparison, share: Array, key: Array
-    ) -> LearnedReward[Any]:
+    def improve(self, learned: Any, comparison: Comparison, share: Array, key: Array) -> Any:
         """r after a comparison, with this ``share`` of the full rate."""
         ...
+
+
+class LearnedWeights(eqx.Module):
+    """A linear reward under way."""
+
+    reward: LinearReward
+    """r_n, which the policy is to answer."""
+    average: LinearReward
+    """Mean of r_1 to r_n: under it no policy is much better than the expert (``docs/maxent.md``)."""
+    steps: Int[Array, "*runs"]
+    """n."""
+
+
+class LearnedNetworks(eqx.Module):
+    """A neural reward under way."""
+
+    reward: ShapedReward
+    optimiser: optax.OptState
 
 
 @dataclass(frozen=True)
@@ -68,16 +78,17 @@ class LinearMaxEnt:
         stable = self.rate * self.shrinkage < 1
         require("maxent.linear", stable, "rate * shrinkage < 1", self.rate * self.shrinkage)
 
-    def start(self, expert: Expert, discount: float, key: Array) -> LearnedReward[LinearReward]:
+    def start(self, expert: Expert, discount: float, key: Array) -> LearnedWeights:
         """w = 0."""
         scale = demonstrated_scale(expert, self.least_scale)
-        return LearnedReward(LinearReward(jax.tree.map(jnp.zeros_like, scale), scale), optax.EmptyState())
+        reward = LinearReward(jax.tree.map(jnp.zeros_like, scale), scale)
+        return LearnedWeights(reward, reward, jnp.zeros((), int))
 
     def improve(
-        self, learned: LearnedReward[LinearReward], comparison: Comparison, share: Array, key: Array
-    ) -> LearnedReward[LinearReward]:
+        self, learned: LearnedWeights, comparison: Comparison, share: Array, key: Array
+    ) -> LearnedWeights:
         """w <- w + eta (E_expert[phi] - E_agent[phi] - lambda w), then back to |w| = 1 if it got longer."""
-        reward, eta = learned.reward, share * self.rate
+        reward, eta, steps = learned.reward, share * self.rate, learned.steps + 1
 
         def ascend(w: Array, expert: Array, agent: Array) -> Array:
             return w + eta * (jnp.mean(expert) - jnp.mean(agent) - self.shrinkage * w)
@@ -86,7 +97,8 @@ class LinearMaxEnt:
         moved = jax.tree.map(ascend, reward.weights, *sides)
         length = jnp.maximum(jnp.linalg.norm(jnp.stack(jax.tree.leaves(moved))), 1.0)
         weights = jax.tree.map(lambda w: w / length, moved)
-        return LearnedReward(LinearReward(weights, reward.scale), learned.optimiser)
+        average = jax.tree.map(lambda a, w: a + (w - a) / steps, learned.average.weights, weights)
+        return LearnedWeights(LinearReward(weights, reward.scale), LinearReward(average, reward.scale), steps)
 
 
 @dataclass(frozen=True)
@@ -109,26 +121,24 @@ class NeuralMaxEnt:
         wide = all(width >= 1 for width in self.hidden)
         require("maxent.neural", wide, "hidden layers of at least 1 unit", self.hidden)
 
-    def start(self, expert: Expert, discount: float, key: Array) -> LearnedReward[ShapedReward]:
+    def start(self, expert: Expert, discount: float, key: Array) -> LearnedNetworks:
         """Random networks."""
         reward = ShapedReward.random(self.hidden, discount, key)
-        return LearnedReward(reward, begin(self._method(), reward))
+        return LearnedNetworks(reward, begin(self._method(), reward))
 
     def improve(
-        self, learned: LearnedReward[ShapedReward], comparison: Comparison, share: Array, key: Array
-    ) -> LearnedReward[ShapedReward]:
+        self, learned: LearnedNetworks, comparison: Comparison, share: Array, key: Array
+    ) -> LearnedNetworks:
         """``steps`` of Adam down E_agent[r] - E_expert[r] + lambda E[max(|grad r| - 1, 0)^2]."""
 
         def loss(reward: ShapedReward, key: Array) -> Array:
             gap = jnp.mean(reward.batch(comparison.agent)) - jnp.mean(reward.batch(comparison.expert))
             return gap + self.penalty * gradient_penalty(reward, comparison.expert, comparison.agent, key)
 
-        def step(
-            learned: LearnedReward[ShapedReward], key: Array
-        ) -> tuple[LearnedReward[ShapedReward], None]:
+        def step(learned: LearnedNetworks, key: Array) -> tuple[LearnedNetworks, None]:
             gradient = jax.grad(loss)(learned.reward, key)
             moved = descend(self._method(), gradient, learned.optimiser, learned.reward, share)
-            return LearnedReward(*moved), None
+            return LearnedNetworks(*moved), None
 
         return jax.lax.scan(step, learned, jax.random.split(key, self.steps))[0]
 
