@@ -16,9 +16,15 @@ from hemma.rl.environment import Environment, Rollout
 from hemma.rl.exploration import Exploration, falling
 from hemma.rl.improvement import Effort, Improvement, Measured, Proximal
 from hemma.rl.policy import GaussianPolicy
+from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExplicitReward, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array, Exogenous
+
+PV, LOAD, ENERGY, PRICE = 0, 1, 2, 5
+"""Positions in the paper's state."""
+SPREADS = 5.0
+"""How far from the median a price still counts as usual, in the scaler's spreads."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +33,12 @@ class ExplicitSettings:
 
     iterations: int = 800
     """Updates of the policy, a multiple of 25."""
-    exploration: Exploration = field(default_factory=Exploration)
+    exploration: Exploration = field(
+        default_factory=lambda: Exploration(first_deviation=(0.5, 0.2), last_deviation=(0.15, 0.01))
+    )
+    ppo: PPOSettings = field(
+        default_factory=lambda: PPOSettings(trace=0.9, learning_rate=3e-3, value_learning_rate=3e-3)
+    )
 
     def __post_init__(self):
         """Refuse settings without meaning."""
@@ -48,10 +59,16 @@ class ExplicitState(eqx.Module):
 
 @dataclass(frozen=True)
 class ExplicitLearning:
-    """A policy improved on the explicit reward: with ``Proximal`` the paper's benchmark PPO."""
+    """A policy improved on the explicit reward: by PPO, the paper's benchmark of that name."""
 
     settings: ExplicitSettings = field(default_factory=ExplicitSettings)
-    improvement: Improvement = field(default_factory=Proximal)
+    other_improvement: Improvement | None = None
+    """What takes the place of PPO as set, if anything."""
+
+    @property
+    def improvement(self) -> Improvement:
+        """How the policy is improved."""
+        return self.other_improvement or Proximal(self.settings.ppo)
 
     @property
     def iterations(self) -> int:
@@ -83,28 +100,49 @@ class ExplicitLearning:
 
 
 def scaled_reward(rollout: Rollout, task: Task[ExplicitReward]) -> Float[Array, "*batch"]:
-    """The explicit reward as learners see it: (r + u (l - p) dt) / unit.
+    """The explicit reward as learners see it: (r + u (l - p) dt + v (E' - E)) / unit.
 
-    What load and PV alone would cost, u (l - p) dt, is most of X1 and none of it can be helped. It depends on
-    neither action nor battery nor building, so taking it out changes no policy's rank, only the noise.
+    What load and PV alone would cost, u (l - p) dt, is most of X1 and none of it can be helped: it depends on
+    no action, so taking it out changes no policy's rank, only the noise. Energy put into the store is paid at
+    its usual price v and charged for when it is taken out again. Over a day these payments come to v times
+    the difference of the two ends, so they change no policy's daily cost; but without them a discount of
+    0.95 an hour leaves half of what a kWh stored at night earns in the afternoon, and storing never pays.
     """
     environment = task.environment
     quantities = environment.scaler.quantities(rollout.transitions.features)
-    pv, load, price = quantities[..., 0], quantities[..., 1], quantities[..., 5]
+    after = environment.scaler.quantities(rollout.transitions.next_features)
+    pv, load, price = quantities[..., PV], quantities[..., LOAD], quantities[..., PRICE]
     unavoidable = price * (load - pv) * environment.home.slot_length
-    return (task.teacher(rollout.costs) + unavoidable) / reward_unit(environment)
+    stored = usual_price(environment) * (after[..., ENERGY] - quantities[..., ENERGY])
+    return (task.teacher(rollout.costs) + unavoidable + stored) / reward_unit(environment)
+
+
+def usual_price(environment: Environment) -> Float[Array, ""]:
+    """v: the mean buying price of the traces [currency/kWh], each within five spreads of the median.
+
+    The mean itself may be ruled by a few hours of scarcity, and to hold energy for them would seem to pay
+    better than to use it on any other day.
+    """
+    traces, scaler = environment.exogenous, environment.scaler
+    reach = SPREADS * scaler.spread[PRICE]
+    usual = jnp.clip(traces.buying_price, scaler.centre[PRICE] - reach, scaler.centre[PRICE] + reach)
+    return _mean(usual, environment)
 
 
 def reward_unit(environment: Environment) -> Float[Array, ""]:
-    """The currency that learners count in: what the HVAC at full power costs in a slot of mean |price|.
+    """The currency that learners count in: a slot at full power of HVAC or battery, at the usual price.
 
     Learning rates then mean the same in SEK as in $, and for slots of any length.
     """
-    traces, home = environment.exogenous, environment.home
-    counted = jnp.arange(traces.slots) < environment.available
-    price = jnp.sum(jnp.where(counted, jnp.abs(traces.buying_price), 0.0)) / environment.available
-    unit = price * home.hvac.max_power * home.slot_length
+    home = environment.home
+    power = jnp.maximum(home.hvac.max_power, home.battery.max_charging_power)
+    unit = jnp.abs(usual_price(environment)) * power * home.slot_length
     return jnp.where(unit > 0, unit, 1.0)
+
+
+def _mean(values: Float[Array, "slots"], environment: Environment) -> Float[Array, ""]:
+    counted = jnp.arange(values.shape[0]) < environment.available
+    return jnp.sum(jnp.where(counted, values, 0.0)) / environment.available
 
 
 def comfort_prices(
