@@ -15,7 +15,6 @@ from hemma.experiment.store import Store
 from hemma.experiment.train import Lesson, Trained, train_lesson
 from hemma.rl.ddpg import DDPG
 from hemma.rl.explicit import ExplicitLearning, choose_comfort_price, comfort_prices
-from hemma.rl.improvement import Proximal
 from hemma.rl.task import explicit_task, stack
 from hemma.types import Exogenous
 
@@ -78,7 +77,7 @@ def _seen_days(case: Case) -> int:
 
 
 def _ppo(experiment: Experiment) -> ExplicitLearning:
-    return ExplicitLearning(experiment.explicit, Proximal(experiment.ppo))
+    return ExplicitLearning(experiment.explicit)
 
 
 def _chosen(case: Case, store: Store, trained: Trained, prices: np.ndarray) -> float:

@@ -99,9 +99,9 @@ class Experiment:
     expert: HierarchySettings = field(default_factory=HierarchySettings)
     airl: AIRLSettings = field(default_factory=AIRLSettings)
     ppo: PPOSettings = field(default_factory=PPOSettings)
-    """Of every policy that is improved by PPO."""
+    """Of every policy that imitates and is improved by PPO."""
     explicit: ExplicitSettings = field(default_factory=ExplicitSettings)
-    """Of PPO on the explicit reward."""
+    """Of PPO on the explicit reward, which has a PPO of its own."""
     ddpg: DDPGSettings = field(default_factory=DDPGSettings)
     maxent: MaxEntSettings = field(default_factory=MaxEntSettings)
     cloning: CloningSettings = field(default_factory=CloningSettings)

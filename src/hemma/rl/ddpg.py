@@ -26,7 +26,7 @@ from hemma.types import Array
 class DDPGSettings:
     """Sizes and rates of DDPG; where a value comes from stands in ``docs/paper.md``."""
 
-    iterations: int = 1000
+    iterations: int = 600
     """Rounds of acting and learning, a multiple of 25."""
     rollouts: int = 8
     """Homes that act side by side in a round, each from a random start."""
@@ -34,22 +34,22 @@ class DDPGSettings:
     """Slots that each acts."""
     capacity: int = 24000
     """Transitions that the memory keeps."""
-    steps: int = 8
+    steps: int = 16
     """Gradient steps of critic and actor in a round."""
     batch: int = 256
     """Transitions of a step."""
-    discount: float = 0.95
+    discount: float = 0.9
     """gamma."""
-    following: float = 0.005
+    following: float = 0.01
     """tau, share of the way that the target networks go towards the learned ones in a step."""
-    actor_rate: float = 3e-4
+    actor_rate: float = 1e-3
     """Of the actor's Adam at first; it falls to a tenth."""
-    critic_rate: float = 1e-3
+    critic_rate: float = 2e-3
     """Of the critic's Adam at first; it falls to a tenth."""
     hidden: tuple[int, ...] = (64, 64)
     """Units of the hidden layers of the battery's mean, and of the critic."""
     exploration: Exploration = field(
-        default_factory=lambda: Exploration(first_deviation=(0.6, 0.4), last_deviation=(0.2, 0.05))
+        default_factory=lambda: Exploration(first_deviation=(0.5, 0.2), last_deviation=(0.15, 0.02))
     )
     """Noise on the actions; ``averaging`` plays no part here, the result is the target actor."""
 
@@ -185,15 +185,21 @@ def bellman_targets(target: ActorAndCritic, batch: Experience, discount: float) 
 def critic_loss(
     critic: Network, actor: GaussianPolicy, transitions: Transitions, targets: Float[Array, "batch"]
 ) -> Array:
-    """E[(Q(s, a) - y)^2] / 2."""
+    """E[H(Q(s, a) - y)], H(x) = x^2 / 2 up to |x| = 1 and |x| - 1/2 beyond: price spikes are heavy tails."""
     value = ActorAndCritic(actor, critic).value(transitions.features, transitions.fractions)
-    return 0.5 * jnp.mean((value - targets) ** 2)
+    return jnp.mean(optax.huber_loss(value, targets))
 
 
 def actor_loss(actor: GaussianPolicy, critic: Network, transitions: Transitions) -> Array:
-    """-E[Q(s, mu(s))]."""
+    """-E[Q(s, mu(s))], Q taken at what the home does: the bound, where mu lies beyond it.
+
+    The gradient passes as if mu were not bounded. Without the bound the critic would be asked about actions
+    that never occurred, and the actor would follow its guess outwards; without the gradient it would stick.
+    """
     both = ActorAndCritic(actor, critic)
-    return -jnp.mean(both.value(transitions.features, both.decision(transitions.features)))
+    decision = both.decision(transitions.features)
+    done = decision + jax.lax.stop_gradient(jnp.clip(decision, -1.0, 1.0) - decision)
+    return -jnp.mean(both.value(transitions.features, done))
 
 
 def followed(target: ActorAndCritic, learned: ActorAndCritic, share: float) -> ActorAndCritic:
