@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from probe_worlds import (
     PPO,
-    best_response,
     demonstrate,
     idle_rule,
     imitation_task,
@@ -261,60 +260,3 @@ def test_tomorrow_matters_reward_at_night_is_prepared_in_time(imitators):
     night, noon = (hour >= 22) | (hour < 2), (hour >= 10) & (hour < 14)
     assert energy[night].mean() > energy[noon].mean() + 2.5
     assert energy[hour == 21].mean() > energy[hour == 15].mean() + 1.0
-
-
-@pytest.mark.slow
-def test_a_known_reward_is_recovered_up_to_what_behaviour_shows():
-    """The expert is soft-optimal for a known w*; not w itself, but what it says about behaviour, returns.
-
-    Scale, constants and shaping leave no trace in behaviour. So: the learner earns under w* what the expert
-    earns; under the learned reward nobody earns clearly more than the expert; it agrees with w* on how good
-    other policies are; and the weights that made the behaviour have their signs. The price on w is low, for
-    it draws w to 0 where an expert can be matched.
-    """
-    truth = linear_reward(charge_at_price=-1.0, level_at_cosine=0.3, throughput=-0.1, warmer=-1.0, hvac=-0.3)
-    world = ruled_task(price_rule)
-    scaler = world.environment.scaler
-    shown = shown_by(best_response(truth, world, updates=300), scaler)
-    linear = LinearMaxEnt(shrinkage=0.02)
-    learner = linear_maxent(MaxEntSettings(iterations=400, windows=8, slots=24, linear=linear), PPO)
-    trained = training.train(stack([imitation_task(shown, scaler)]), learner)
-    state = jax.tree.map(lambda x: x[0], trained.state)
-    reward = state.learned.average
-
-    def earned(reward, shown):
-        return float(jnp.mean(reward.batch(imitation_task(shown, scaler).teacher.transitions)))
-
-    others = [shown_by(stranger(seed), scaler) for seed in range(6)]
-    others += [demonstrate(Home(), traces(5), rule) for rule in (price_rule, idle_rule)]
-    true, found = ([earned(r, other) for other in others] for r in (truth, reward))
-    best = earned(truth, shown)
-    assert best - earned(truth, shown_by(state.average, scaler)) < 0.02 * (best - np.mean(true))
-    assert max(found) - earned(reward, shown) < 0.05 * (max(found) - min(found))
-    assert np.corrcoef(true, found)[0, 1] > 0.75
-    w = reward.weights
-    assert max(float(w.charge_at_price), -float(w.level_at_cosine), float(w.warmer)) < 0
-
-
-@pytest.mark.slow
-def test_a_neural_reward_leads_to_the_expert_s_earnings():
-    """The learner earns under a w* that it never saw what the expert earns."""
-    world = ruled_task(price_rule)
-    scaler = world.environment.scaler
-    shown = shown_by(best_response(NIGHT, world, updates=100), scaler)
-    learner = neural_maxent(MaxEntSettings(iterations=400, windows=8, slots=24), PPO)
-    trained = training.train(stack([imitation_task(shown, scaler)]), learner)
-    policy = jax.tree.map(lambda x: x[0], trained.state.average)
-
-    def earned(shown):
-        return float(jnp.mean(truth.batch(imitation_task(shown, scaler).teacher.transitions)))
-
-    usual = np.mean([earned(shown_by(stranger(seed), scaler)) for seed in range(6)])
-    assert earned(shown) - earned(shown_by(policy, scaler)) < 0.1 * (earned(shown) - usual)
-
-
-def stranger(seed):
-    """A policy with random weights."""
-    policy = GaussianPolicy((16,), jax.random.key(seed))
-    slopes = jax.random.normal(jax.random.key(100 + seed), (2, 8))
-    return eqx.tree_at(lambda p: p.linear, policy, slopes)
