@@ -62,6 +62,7 @@ def test_a_known_reward_is_recovered_up_to_what_behaviour_shows():
 
 def test_a_neural_reward_leads_to_the_expert_s_earnings():
     """The learner earns under a w* that it never saw what the expert earns."""
+    truth = linear_reward(level_at_cosine=1.0, throughput=-0.3, hvac=-0.3)
     world = ruled_task(price_rule)
     scaler = world.environment.scaler
     shown = shown_by(best_response(truth, world, updates=100), scaler)
