@@ -5,9 +5,25 @@ from dataclasses import dataclass, replace
 
 import equinox as eqx
 
-from hemma.experiment.demonstrate import Expert
+from hemma.experiment.demonstrate import Expert, demonstration
 from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.lessons import airl
+from hemma.experiment.store import Store
+from hemma.experiment.train import Lesson
 from hemma.home import ComfortBand, Home
+from hemma.rl.task import make_task, stack
+
+LABEL = "HA-1-bands"
+
+
+@dataclass(frozen=True)
+class Bands:
+    """HA-1 on the demonstrations of each band's expert, all bands and seeds side by side."""
+
+    lesson: Lesson
+    """Its runs are sorted by band."""
+    limits: tuple[float, ...]
+    """The edges that the experts aim at [degC]."""
 
 
 @dataclass(frozen=True)
@@ -40,3 +56,20 @@ def shifted_experts(expert: Expert, relaxations: Sequence[float]) -> tuple[Shift
         variant = f"-limit-{limit:g}"
         bands.append(ShiftedBand(limit, replace(expert, case=case, variant=variant)))
     return tuple(bands)
+
+
+def bands_lesson(expert: Expert, store: Store) -> Bands | None:
+    """The experts of all moved bands demonstrate, if any are asked for and HA-1 is."""
+    experiment = expert.case.experiment
+    bands = shifted_experts(expert, experiment.pareto.relaxations)
+    if not bands or "HA-1" not in experiment.learned:
+        return None
+    shown = [demonstration(store, band.expert, experiment.demonstration_days) for band in bands]
+    tasks = [
+        make_task(band.expert.case.home, band.expert.case.first_days(d.days), d.demonstrated, seed)
+        for band, d in zip(bands, shown, strict=True)
+        for seed in range(experiment.pareto.seeds)
+    ]
+    basis = fingerprint("bands", [d.mark for d in shown])
+    lesson = Lesson(LABEL, airl(experiment), stack(tasks), basis)
+    return Bands(lesson, tuple(band.limit for band in bands))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from enum import IntEnum, auto
 from functools import partial
 
+from hemma.experiment.bands import Bands, bands_lesson
 from hemma.experiment.case import Case, empty_results
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.explicit import Sweep, explicit_lessons, sweep_comfort_price, wants_explicit
@@ -18,7 +19,7 @@ from hemma.experiment.references import References, plain_optimum
 from hemma.experiment.regrets import split_regrets
 from hemma.experiment.results import HomeResults, MethodResults, Run
 from hemma.experiment.store import Store
-from hemma.experiment.train import Lesson, train_lesson
+from hemma.experiment.train import Lesson, Trained, train_lesson, train_lessons
 
 LENGTHS = ("HA-1", "HA-2", ANY_LENGTH)
 """One method at several lengths of the demonstrations."""
@@ -60,20 +61,31 @@ class HomeRun:
         if last is Stage.IDENTIFY:
             return
         expert = Expert(self.case, identification)
-        imitating = self._imitating(expert)
+        imitating, bands = self._imitating(expert), bands_lesson(expert, self.store)
         if last is Stage.DEMONSTRATE:
             return
         if last is Stage.TRAIN:
-            for learned in (*imitating, *self._paid()[1]):
+            self._train(imitating, bands)
+            for learned in self._paid()[1]:
                 train_lesson(learned.lesson, self.store)
             return
-        self._measure(results, expert, imitating)
+        self._measure(results, expert, imitating, bands)
 
     def _imitating(self, expert: Expert) -> list[Learned]:
         """The methods that learn from demonstrations."""
         wanted = imitations(self.case.experiment, self.case.training_days)
         made = lessons(self.case, expert, self.store, wanted)
         return [Learned(one.method, lesson, one.days) for one, lesson in zip(wanted, made, strict=True)]
+
+    def _train(self, imitating: Sequence[Learned], bands: Bands | None) -> dict[str, Trained]:
+        """The controllers of each lesson by its label; lessons of one algorithm are trained in one call."""
+        waiting = [learned.lesson for learned in imitating] + ([] if bands is None else [bands.lesson])
+        trained: dict[str, Trained] = {}
+        for algorithm in dict.fromkeys(lesson.algorithm for lesson in waiting):
+            same = [lesson for lesson in waiting if lesson.algorithm == algorithm]
+            made = train_lessons(same, self.store)
+            trained |= {lesson.label: one for lesson, one in zip(same, made, strict=True)}
+        return trained
 
     def _paid(self) -> tuple[Sweep | None, list[Learned]]:
         """The methods that learn from the explicit reward, and the sweep that set its beta_T."""
@@ -83,25 +95,30 @@ class HomeRun:
         made = explicit_lessons(self.case, sweep.chosen)
         return sweep, [Learned(lesson.label, lesson) for lesson in made]
 
-    def _measure(self, results: HomeResults, expert: Expert, imitating: Sequence[Learned]) -> None:
-        """Baselines first, since they are quick; then each lesson, measured as soon as it is trained."""
+    def _measure(
+        self, results: HomeResults, expert: Expert, imitating: Sequence[Learned], bands: Bands | None
+    ) -> None:
+        """Baselines first, since they are quick; then what is learned, measured when it is trained."""
         judge = Judge(self.case, self.store)
         judge.write_exogenous()
         methods = References(judge, expert).methods()
-        optimum = plain_optimum(judge)
-        results = self._put(replace(results, methods=methods, optimum=optimum))
+        results = self._put(replace(results, methods=methods, optimum=plain_optimum(judge)))
+        trained = self._train(imitating, bands)
         for learned in imitating:
-            results = self._learned(results, judge, learned)
+            results = self._learned(results, judge, learned, trained[learned.lesson.label])
         sweep, paid = self._paid()
         for learned in paid:
-            results = self._learned(results, judge, learned)
+            results = self._learned(results, judge, learned, train_lesson(learned.lesson, self.store))
         results = self._put(replace(results, regret=split_regrets(judge, results.methods)))
-        points = Pareto(judge).points(expert, sweep, results.methods)
+        pareto = Pareto(judge)
+        runs = [run.metrics.total_temperature_deviation for method in methods for run in method.runs]
+        points = pareto.frontier(max(runs))
+        points += () if sweep is None else pareto.comfort_prices(sweep)
+        points += () if bands is None else pareto.comfort_bands(bands, trained[bands.lesson.label])
         self._put(replace(results, pareto=points))
 
-    def _learned(self, results: HomeResults, judge: Judge, learned: Learned) -> HomeResults:
+    def _learned(self, results: HomeResults, judge: Judge, learned: Learned, trained: Trained) -> HomeResults:
         lesson = learned.lesson
-        trained = train_lesson(lesson, self.store)
         runs = judge.judged(lesson.label, trained.mark, partial(play, self.case, lesson, trained))
         return self._put(_with(results, learned, runs))
 

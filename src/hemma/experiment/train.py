@@ -1,7 +1,9 @@
 """Stage: train a learner, all its runs side by side, saved while under way."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 
 import equinox as eqx
@@ -14,14 +16,14 @@ from hemma.experiment.curves import write_curves
 from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.store import Store
 from hemma.rl.policy import PolicyController
-from hemma.rl.task import Task
+from hemma.rl.task import Task, side_by_side
 from hemma.rl.training import Algorithm, Training, begin, controllers, load, save, train
 
 STAGE = "train"
 SECONDS_BETWEEN_SAVES = 20.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lesson:
     """What some runs learn, side by side."""
 
@@ -53,7 +55,8 @@ class Trained:
     curves: tuple[str, ...]
     """Paths of the learning curves inside the folder."""
     seconds: float
-    """Wall-clock time in which all runs were trained side by side, compilation included [s]."""
+    """Wall-clock time in which all runs were trained side by side, compilation included; of lessons trained
+    together each has the share of its runs [s]."""
     mark: str
 
 
@@ -126,31 +129,71 @@ class _Clock:
         self._saved = time.monotonic()
 
 
-def train_lesson(lesson: Lesson, store: Store) -> Trained:
-    """Train all runs of a lesson, or take the controllers that an earlier call trained.
+def train_lessons(lessons: Sequence[Lesson], store: Store) -> tuple[Trained, ...]:
+    """The controllers of lessons of one algorithm: those of earlier calls, and the rest trained in one call.
 
-    The learning curves are written beside the controllers.
+    A wide batch costs less a run, and is compiled once. The learning curves are written beside the
+    controllers.
     """
-    label, mark, seeds = lesson.label, lesson.mark, [int(seed) for seed in lesson.task.seed]
-    file = store.model(f"{label}.safetensors")
-    curves = tuple(store.curve(f"{label}-{run}.csv") for run in range(lesson.runs))
-    content = store.kept(label, mark)
-    if content is not None:
-        store.progress.reused(label, f"{lesson.runs} runs")
-    else:
-        store.progress.started(label, lesson.algorithm.iterations)
-        classroom = _Classroom(lesson, store)
-        training, seconds = classroom.train()
-        home = jax.tree.map(lambda x: x[0], lesson.task.environment.home)
-        write_curves(store.folder, curves, training.curve, home)
-        content = {"seconds": seconds, "seeds": seeds}
-        made = controllers(training, lesson.task, lesson.algorithm)
-        save_tree(store.folder / file, made, {"fingerprint": mark})
-        store.keep(label, mark, [file, *curves], content)
-        classroom.under_way.unlink(missing_ok=True)
-        store.progress.finished(label, f"{lesson.runs} runs side by side. {_message(training)}")
-    stored = load_tree(store.folder / file, _structure(lesson))
-    return Trained(stored, curves, content["seconds"], mark)
+    missing = [lesson for lesson in lessons if store.kept(lesson.label, lesson.mark) is None]
+    for lesson in lessons:
+        if lesson not in missing:
+            store.progress.reused(lesson.label, f"{lesson.runs} runs")
+    if missing:
+        _train(missing, store)
+    return tuple(_taken(lesson, store) for lesson in lessons)
+
+
+def train_lesson(lesson: Lesson, store: Store) -> Trained:
+    """The controllers of one lesson."""
+    return train_lessons([lesson], store)[0]
+
+
+def _train(lessons: Sequence[Lesson], store: Store) -> None:
+    whole = _together(lessons)
+    store.progress.started(whole.label, whole.algorithm.iterations)
+    classroom = _Classroom(whole, store)
+    training, seconds = classroom.train()
+    ends = list(accumulate(lesson.runs for lesson in lessons))
+    for lesson, start, stop in zip(lessons, [0, *ends], ends, strict=False):
+        part = jax.tree.map(lambda x, own=slice(start, stop): x[own], training)
+        _keep(lesson, part, seconds * lesson.runs / whole.runs, store)
+    classroom.under_way.unlink(missing_ok=True)
+    store.progress.finished(whole.label, f"{whole.runs} runs side by side. {_message(training)}")
+
+
+def _together(lessons: Sequence[Lesson]) -> Lesson:
+    """All runs of the lessons as one lesson."""
+    first = lessons[0]
+    if len(lessons) == 1:
+        return first
+    task = side_by_side([lesson.task for lesson in lessons])
+    basis = fingerprint("together", [lesson.mark for lesson in lessons])
+    return Lesson(f"{first.label}-and-{len(lessons) - 1}-more", first.algorithm, task, basis)
+
+
+def _keep(lesson: Lesson, training: Training, seconds: float, store: Store) -> None:
+    curves, file = _curves(lesson, store), store.model(f"{lesson.label}.safetensors")
+    home = jax.tree.map(lambda x: x[0], lesson.task.environment.home)
+    write_curves(store.folder, curves, training.curve, home)
+    made = controllers(training, lesson.task, lesson.algorithm)
+    save_tree(store.folder / file, made, {"fingerprint": lesson.mark})
+    store.keep(lesson.label, lesson.mark, [file, *curves], {"seconds": seconds})
+
+
+def _taken(lesson: Lesson, store: Store) -> Trained:
+    content = store.kept(lesson.label, lesson.mark)
+    if content is None:
+        raise HemmaError(
+            f"{lesson.label}: expected the controllers just trained in {store.folder}, they are gone or "
+            "changed; let one run at a time use a results folder, and run the same command again"
+        )
+    stored = load_tree(store.folder / store.model(f"{lesson.label}.safetensors"), _structure(lesson))
+    return Trained(stored, _curves(lesson, store), content["seconds"], lesson.mark)
+
+
+def _curves(lesson: Lesson, store: Store) -> tuple[str, ...]:
+    return tuple(store.curve(f"{lesson.label}-{run}.csv") for run in range(lesson.runs))
 
 
 def _structure(lesson: Lesson) -> PolicyController:

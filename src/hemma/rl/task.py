@@ -132,6 +132,18 @@ def stack(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
     return jax.tree.map(together, *tasks)
 
 
+def side_by_side(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
+    """Stacked tasks, one after the other along their axis of runs, padded to one length."""
+
+    def together(*leaves: Array) -> Array:
+        if leaves[0].ndim == 1:
+            return jnp.concatenate(leaves)
+        length = max(leaf.shape[1] for leaf in leaves)
+        return jnp.concatenate([jax.vmap(lambda x: _pad(x, length))(leaf) for leaf in leaves])
+
+    return jax.tree.map(together, *tasks)
+
+
 def _environment(home: Home, exogenous: Exogenous, scaler: StateScaler) -> Environment:
     traces = jax.tree.map(lambda x: jnp.asarray(x, float), exogenous)
     home = jax.tree.map(lambda x: jnp.asarray(x, float), home)
