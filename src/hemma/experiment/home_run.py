@@ -114,7 +114,9 @@ class HomeRun:
         runs = [run.metrics.total_temperature_deviation for method in methods for run in method.runs]
         points = pareto.frontier(max(runs))
         points += () if sweep is None else pareto.comfort_prices(sweep)
-        points += () if bands is None else pareto.comfort_bands(bands, trained[bands.lesson.label])
+        if bands is not None:
+            usual = next(method.runs for method in results.methods if method.method == "HA-1")
+            points += pareto.comfort_bands(bands, trained[bands.lesson.label], usual)
         self._put(replace(results, pareto=points))
 
     def _learned(self, results: HomeResults, judge: Judge, learned: Learned, trained: Trained) -> HomeResults:

@@ -47,14 +47,19 @@ class Pareto:
             points.append(_point("PPO", "beta_T", price, same))
         return tuple(points)
 
-    def comfort_bands(self, bands: Bands, trained: Trained) -> tuple[ParetoPoint, ...]:
-        """HA-1 whose expert aims at another edge of the band; measured against the band that people want."""
+    def comfort_bands(self, bands: Bands, trained: Trained, usual: Sequence[Run]) -> tuple[ParetoPoint, ...]:
+        """HA-1 whose expert aims at another edge of the band; measured against the band that people want.
+
+        ``usual`` are the runs of HA-1 itself, whose expert aims at that band.
+        """
         case, lesson = self.judge.case, bands.lesson
         runs = self.judge.judged(lesson.label, trained.mark, partial(play, case, lesson, trained))
         edge = "lower comfort limit" if case.home.hvac.heats else "upper comfort limit"
         seeds = case.experiment.pareto.seeds
         parts = [runs[i * seeds : (i + 1) * seeds] for i in range(len(bands.limits))]
-        return tuple(_point("HA-1", edge, x, part) for x, part in zip(bands.limits, parts, strict=True))
+        own = case.home.comfort.low if case.home.hvac.heats else case.home.comfort.high
+        swept = [*zip(bands.limits, parts, strict=True), (float(own), usual)]
+        return tuple(_point("HA-1", edge, x, part) for x, part in sorted(swept, key=lambda pair: pair[0]))
 
 
 def _point(series: str, parameter: str, value: float, runs: Sequence[Run]) -> ParetoPoint:

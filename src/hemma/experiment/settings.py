@@ -38,7 +38,7 @@ class DataEfficiency:
 class ComfortPrices:
     """How beta_T of the explicit reward is chosen: by a sweep on the training period."""
 
-    multiples: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0, 64.0)
+    multiples: tuple[float, ...] = (0.25, 1.0, 4.0, 16.0)
     """Values to try, in multiples of what the HVAC at full power costs in a slot of mean buying price."""
     seeds: int = 1
     """Runs of each."""
