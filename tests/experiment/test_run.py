@@ -203,6 +203,15 @@ def test_the_method_sees_its_own_days_and_no_others(finished, tmp_path):
     )
 
 
+def test_nobody_needs_to_learn_from_demonstrations(tmp_path):
+    tiny = tiny_experiment()
+    no_lengths = replace(tiny.data_efficiency, days=())
+    experiment = replace(tiny, learned=("PPO",), data_efficiency=no_lengths)
+    watching = Watching()
+    run(tiny_job(tmp_path, experiment), Stage.DEMONSTRATE, watching)
+    assert watching.done == ["identify"]
+
+
 def test_too_many_days_of_demonstrations_are_refused(tmp_path):
     experiment = replace(tiny_experiment(), demonstration_days=6)
     with pytest.raises(HemmaError, match=r"at least 6 days .* got 5; set demonstration_days lower"):

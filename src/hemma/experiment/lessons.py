@@ -78,6 +78,8 @@ def lessons(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation
 
     All tasks are padded to one length, so that those with as many runs share compiled code.
     """
+    if not wanted:
+        return ()
     shown = {days: demonstration(store, expert, days) for days in dict.fromkeys(one.days for one in wanted)}
     runs = [(shown[one.days], seed) for one in wanted for seed in range(one.seeds)]
     together = task.stack(
