@@ -8,9 +8,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from probe_worlds import demonstrate, price_rule, ruled_task, traces
 
 from hemma.errors import HemmaError
-from hemma.home import Home, observe, paper_state
+from hemma.home import Home
 from hemma.irl.airl import AdversarialImitation, AIRLSettings, Contest
 from hemma.irl.discriminator import cross_entropy, gradient_penalty
 from hemma.irl.reward import ImitationScore, ShapedReward
@@ -19,8 +20,7 @@ from hemma.rl.environment import Transitions
 from hemma.rl.improvement import Proximal
 from hemma.rl.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
-from hemma.rl.task import Demonstrated, Expert, make_task, stack
-from hemma.types import Action, Exogenous
+from hemma.rl.task import Expert, make_task, stack
 
 SMALL = AIRLSettings(
     iterations=50,
@@ -32,44 +32,8 @@ SMALL = AIRLSettings(
 LEARNER = AdversarialImitation(SMALL, Proximal(PPOSettings(rollouts=8, slots=12, hidden=(16,))))
 
 
-def traces(days, seed=0):
-    rng = np.random.default_rng(seed)
-    hour = np.arange(24 * days) % 24.0
-    price = np.where((hour >= 14) & (hour < 20), 0.3, 0.1) * rng.uniform(0.9, 1.1, hour.size)
-    return Exogenous(
-        pv_generation=np.maximum(0.0, np.sin((hour - 6) / 12 * np.pi)),
-        load=rng.uniform(0.3, 1.5, hour.size),
-        outdoor_temperature=29 + 6 * np.sin((hour - 9) / 24 * 2 * np.pi),
-        buying_price=price,
-        selling_price=0.9 * price,
-        hour_of_day=hour,
-    )
-
-
-def demonstrate(home, exogenous, rule):
-    """Carry out ``rule(observation) -> Action`` and note the transitions."""
-
-    def slot(state, now):
-        observation = observe(state, now)
-        step = home.step(state, now, rule(observation), jnp.zeros(()))
-        action = jnp.stack([step.action.battery_power, step.action.hvac_power])
-        return step.state, (paper_state(observation), action)
-
-    exogenous = jax.tree.map(lambda x: jnp.asarray(x, float), exogenous)
-    _, (states, actions) = jax.lax.scan(slot, home.reset(), exogenous)
-    return Demonstrated(states[:-1], actions[:-1], states[1:])
-
-
-def price_rule(observation):
-    """Discharge when dear, charge when cheap; HVAC proportional to the outdoor temperature."""
-    dear = observation.buying_price > 0.2
-    power = jnp.where(dear, -3.0, 3.0)
-    return Action(power, jnp.clip((observation.outdoor_temperature - 24) / 10, 0.0, 2.0))
-
-
 def task(seed=0, days=5):
-    home, exogenous = Home(), traces(days)
-    return make_task(home, exogenous, demonstrate(home, exogenous, price_rule), seed)
+    return ruled_task(price_rule, seed, days)
 
 
 def transitions(samples, seed=0):
