@@ -10,6 +10,7 @@ import pytest
 from paid_worlds import played
 
 from hemma.errors import HemmaError
+from hemma.rl.critic import Critic
 from hemma.rl.ddpg import (
     DDPG,
     ActorAndCritic,
@@ -21,7 +22,6 @@ from hemma.rl.ddpg import (
 )
 from hemma.rl.environment import Transitions
 from hemma.rl.memory import Experience, empty_memory
-from hemma.rl.network import Network
 from hemma.rl.policy import GaussianPolicy
 
 LEARNER = DDPG(
@@ -48,7 +48,7 @@ def experience(first, samples):
 
 def networks(seed):
     actor_key, critic_key = jax.random.split(jax.random.key(seed))
-    return ActorAndCritic(GaussianPolicy((8,), actor_key), Network((10, 8, 1), critic_key))
+    return ActorAndCritic(GaussianPolicy((8,), actor_key), Critic((8,), critic_key))
 
 
 def batch(samples=6, seed=0):
@@ -73,12 +73,25 @@ def test_nothing_but_what_was_stored_is_sampled():
     assert set(np.asarray(drawn.rewards).tolist()) == {7.0, 8.0}
 
 
+def test_the_critic_is_a_value_of_the_state_and_one_of_the_action_rectified():
+    """Q(s, a) = V(s) + A(s, a), both written out with max(0, x)."""
+
+    def by_hand(network, inputs):
+        hidden = np.maximum(0.0, np.asarray(network.weights[0]) @ inputs + np.asarray(network.biases[0]))
+        return float((np.asarray(network.weights[1]) @ hidden + np.asarray(network.biases[1]))[0])
+
+    critic, t = networks(3).critic, batch().transitions
+    for s, a in zip(np.asarray(t.features), np.asarray(t.fractions), strict=True):
+        expected = by_hand(critic.value, s) + by_hand(critic.advantage, np.concatenate([s, a]))
+        np.testing.assert_allclose(critic(jnp.asarray(s), jnp.asarray(a)), expected, rtol=1e-4, atol=1e-6)
+
+
 def test_bellman_targets_are_bootstrapped_everywhere():
     target, some = networks(0), batch()
     expected = []
     for reward, following in zip(some.rewards, some.transitions.next_features, strict=True):
         decision = np.clip(np.asarray(target.actor.mean(following)), -1, 1)
-        value = float(target.critic(jnp.concatenate([following, jnp.asarray(decision)]))[0])
+        value = float(target.critic(following, jnp.asarray(decision)))
         expected.append(float(reward) + 0.9 * value)
     np.testing.assert_allclose(bellman_targets(target, some, 0.9), expected, rtol=1e-5)
 
@@ -86,15 +99,13 @@ def test_bellman_targets_are_bootstrapped_everywhere():
 def test_losses_by_hand():
     both, some = networks(1), batch()
     targets, t = jnp.linspace(-3.0, 3.0, 6), some.transitions
-    inputs = jnp.concatenate([t.features, t.fractions], axis=1)
-    values = np.array([float(both.critic(x)[0]) for x in inputs])
+    values = np.array([float(both.critic(s, a)) for s, a in zip(t.features, t.fractions, strict=True)])
     loss = critic_loss(both.critic, both.actor, t, targets)
     error = np.abs(values - np.asarray(targets))
     expected = np.where(error <= 1, 0.5 * error**2, error - 0.5).mean()
     np.testing.assert_allclose(loss, expected, rtol=1e-5)
     decisions = jnp.clip(jnp.stack([both.actor.mean(x) for x in t.features]), -1, 1)
-    inputs = jnp.concatenate([t.features, decisions], axis=1)
-    values = np.array([float(both.critic(x)[0]) for x in inputs])
+    values = np.array([float(both.critic(s, a)) for s, a in zip(t.features, decisions, strict=True)])
     np.testing.assert_allclose(actor_loss(both.actor, both.critic, t), -values.mean(), rtol=1e-5)
 
 

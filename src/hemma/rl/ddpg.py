@@ -9,14 +9,14 @@ import optax
 from jaxtyping import Float, Int
 
 from hemma.home.checks import require
+from hemma.rl.critic import Critic
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions, collect
 from hemma.rl.explicit import scaled_reward
 from hemma.rl.exploration import Exploration, falling
 from hemma.rl.improvement import Measured, measured
 from hemma.rl.memory import Experience, Memory, empty_memory
-from hemma.rl.network import Network
-from hemma.rl.policy import ACTIONS, FEATURES, GaussianPolicy
+from hemma.rl.policy import GaussianPolicy
 from hemma.rl.task import ExplicitReward, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
@@ -73,11 +73,11 @@ class ActorAndCritic(eqx.Module):
     """mu(s) and Q(s, a)."""
 
     actor: GaussianPolicy
-    critic: Network
+    critic: Critic
 
     def value(self, features: Array, fractions: Array) -> Float[Array, "batch"]:
         """Q of a batch of states and actions."""
-        return jax.vmap(self.critic)(jnp.concatenate([features, fractions], axis=-1))[:, 0]
+        return jax.vmap(self.critic)(features, fractions)
 
     def decision(self, features: Array) -> Float[Array, "batch actions"]:
         """mu of a batch of states."""
@@ -115,7 +115,7 @@ class DDPG:
         """Random networks, and a memory of what the random actor did."""
         actor_key, critic_key, act_key, key = jax.random.split(key, 4)
         actor = GaussianPolicy(self.settings.hidden, actor_key)
-        critic = Network((FEATURES + ACTIONS, *self.settings.hidden, 1), critic_key)
+        critic = Critic(self.settings.hidden, critic_key)
         both = ActorAndCritic(actor, critic)
         experience, _ = self._act(task, actor, jnp.zeros((), int), act_key)
         memory = empty_memory(experience, self.settings.capacity).add(experience)
@@ -183,14 +183,14 @@ def bellman_targets(target: ActorAndCritic, batch: Experience, discount: float) 
 
 
 def critic_loss(
-    critic: Network, actor: GaussianPolicy, transitions: Transitions, targets: Float[Array, "batch"]
+    critic: Critic, actor: GaussianPolicy, transitions: Transitions, targets: Float[Array, "batch"]
 ) -> Array:
     """E[H(Q(s, a) - y)], H(x) = x^2 / 2 up to |x| = 1 and |x| - 1/2 beyond: price spikes are heavy tails."""
     value = ActorAndCritic(actor, critic).value(transitions.features, transitions.fractions)
     return jnp.mean(optax.huber_loss(value, targets))
 
 
-def actor_loss(actor: GaussianPolicy, critic: Network, transitions: Transitions) -> Array:
+def actor_loss(actor: GaussianPolicy, critic: Critic, transitions: Transitions) -> Array:
     """-E[Q(s, mu(s))], Q taken at what the home does: the bound, where mu lies beyond it.
 
     The gradient passes as if mu were not bounded. Without the bound the critic would be asked about actions
