@@ -16,7 +16,6 @@ def tiny_experiment(iterations=50):
     airl = replace(
         default.airl,
         iterations=iterations,
-        slots=12,
         hidden=(4,),
         batch=16,
         steps=1,

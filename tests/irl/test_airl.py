@@ -27,7 +27,6 @@ SMALL = AIRLSettings(
     agent_rollouts=4,
     batch=64,
     hidden=(16,),
-    slots=12,
 )
 LEARNER = AdversarialImitation(SMALL, Proximal(PPOSettings(rollouts=8, slots=12, hidden=(16,))))
 
@@ -178,7 +177,7 @@ def test_a_diverged_run_is_named():
 def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw(head):
     """A rule on price and weather, on days the learner never saw: same battery and HVAC power."""
     improvement = Proximal(PPOSettings(rollouts=32, slots=24))
-    learner = AdversarialImitation(AIRLSettings(iterations=250, slots=24), improvement, head)
+    learner = AdversarialImitation(AIRLSettings(iterations=250), improvement, head)
     runs = stack([task()])
     trained = training.train(runs, learner)
     controller = jax.tree.map(lambda x: x[0], training.controllers(trained, runs, learner))

@@ -36,6 +36,16 @@ def environment(slots=240, seed=0):
     return Environment(Home(), exogenous, jnp.asarray(slots), fit_scaler(states))
 
 
+@pytest.mark.parametrize("samples", [1, 2, 5, 64, 3072])
+def test_shuffling_keeps_every_sample_once_and_prefers_no_place(samples):
+    orders = np.asarray(
+        jax.vmap(lambda key: ppo.shuffled(samples, key))(jax.random.split(jax.random.key(0), 400))
+    )
+    assert np.array_equal(np.sort(orders, axis=1), np.tile(np.arange(samples), (400, 1)))
+    first = orders[:, 0] / max(samples - 1, 1)
+    assert samples == 1 or abs(first.mean() - 0.5) < 4 * first.std() / np.sqrt(400)
+
+
 def trained(environment, reward, updates, settings=SETTINGS):
     def improve(learner, key):
         collect_key, update_key = jax.random.split(key)

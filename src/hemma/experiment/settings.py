@@ -24,7 +24,7 @@ class DataEfficiency:
 
     days: tuple[int, ...] = (1, 3, 7, 15, 30, 60)
     """Lengths, each from the first training day on; those longer than the training period are left out."""
-    seeds: int = 2
+    seeds: int = 3
     """Runs of each length."""
 
     def __post_init__(self):

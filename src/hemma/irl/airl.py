@@ -13,9 +13,9 @@ from hemma.home.checks import require
 from hemma.irl.discriminator import cross_entropy, gradient_penalty
 from hemma.irl.reward import AbstractHead, ShapedReward
 from hemma.rl.descent import begin, descend
-from hemma.rl.environment import Environment, Transitions, collect
+from hemma.rl.environment import Rollout, Transitions
 from hemma.rl.exploration import Exploration, falling
-from hemma.rl.improvement import Effort, Improvement, Proximal
+from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
 from hemma.rl.policy import GaussianPolicy, log_density
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
@@ -26,22 +26,20 @@ from hemma.types import Array
 class AIRLSettings:
     """Sizes and rates of Algorithm 1; where a value comes from stands in ``docs/paper.md``."""
 
-    iterations: int = 1000
+    iterations: int = 500
     """N, a multiple of 25."""
     agent_rollouts: int = 16
-    """Rollouts collected for the discriminator in an iteration."""
-    slots: int = 48
-    """Length of these rollouts."""
+    """How many of an iteration's rollouts the discriminator sees."""
     replayed: int = 8
     """Iterations whose agent transitions the discriminator still sees."""
     steps: int = 4
     """Discriminator updates an iteration."""
     batch: int = 512
     """Expert and as many agent transitions an update, I / 2."""
-    learning_rate: float = 1e-3
+    learning_rate: float = 5e-3
     """Of the discriminator's Adam."""
-    penalty: float = 1.0
-    """Weight of the gradient penalty."""
+    penalty: float = 0.0
+    """Weight of the gradient penalty; 0 leaves it out."""
     log_density_bound: float = 10.0
     """log pi enters the logit within plus and minus this."""
     hidden: tuple[int, ...] = (64,)
@@ -53,7 +51,7 @@ class AIRLSettings:
         """Refuse settings without meaning."""
         whole = self.iterations >= CHUNK and self.iterations % CHUNK == 0
         require("airl", whole, f"iterations a multiple of {CHUNK}", self.iterations)
-        for name in ("agent_rollouts", "slots", "replayed", "steps", "batch"):
+        for name in ("agent_rollouts", "replayed", "steps", "batch"):
             require("airl", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
         for name in ("learning_rate", "log_density_bound"):
             require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
@@ -119,9 +117,12 @@ class AdversarialImitation:
         learner = self.improvement.start(learner_key)
         policy = self.improvement.policy(learner)
         head = self.head.random(settings.hidden, self.improvement.discount, head_key)
-        deviation = self._deviation(jnp.zeros(()))
-        keys = jax.random.split(replay_key, settings.replayed)
-        replay = jax.vmap(lambda k: self._agent(task.environment, policy, deviation, k))(keys)
+        effort = Effort(self._deviation(jnp.zeros(())))
+
+        def kept(key: Array) -> Transitions:
+            return self._kept(self.improvement.explore(learner, task.environment, effort, key))
+
+        replay = jax.vmap(kept)(jax.random.split(replay_key, settings.replayed))
         return TrainingState(
             learner=learner,
             head=head,
@@ -135,35 +136,33 @@ class AdversarialImitation:
     def iterate(self, state: TrainingState, task: Task[Expert]) -> tuple[TrainingState, Progress]:
         """One iteration n of Algorithm 1 (its lines 3 to 10)."""
         settings, n = self.settings, state.iteration
-        key, collect_key, head_key, improve_key = jax.random.split(state.key, 4)
-        policy, deviation = self.improvement.policy(state.learner), self._deviation(n)
+        key, explore_key, head_key, improve_key = jax.random.split(state.key, 4)
+        effort = Effort(self._deviation(n), falling(n, settings.iterations))
+        rollout = self.improvement.explore(state.learner, task.environment, effort, explore_key)
 
         # Learn the reward function of the home (lines 3 to 8).
-        fresh = self._agent(task.environment, policy, deviation, collect_key)
+        fresh = self._kept(rollout)
         replay = jax.tree.map(lambda old, new: old.at[n % settings.replayed].set(new), state.replay, fresh)
-        contest = Contest(task.teacher, replay, policy, deviation)
+        contest = Contest(task.teacher, replay, self.improvement.policy(state.learner), effort.deviation)
         head, head_optimiser, judged = learn_head(
             state.head, state.head_optimiser, contest, settings, head_key
         )
 
         # Train the energy management policy (lines 9 and 10).
-        effort = Effort(deviation, falling(n, settings.iterations))
-        learner, measured = self.improvement.improve(
-            state.learner, task.environment, lambda r: head.rewards(r.transitions), effort, improve_key
-        )
+        rewards = head.rewards(rollout.transitions)
+        learner = self.improvement.improve(state.learner, rollout, standard(rewards), effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
-        progress = Progress(*judged, measured.reward, measured.energy_cost, measured.temperature_deviation)
+        seen = measured(rollout, rewards)
+        progress = Progress(*judged, seen.reward, seen.energy_cost, seen.temperature_deviation)
         return TrainingState(learner, head, head_optimiser, replay, average, n + 1, key), progress
 
     def _deviation(self, iteration: Array) -> Float[Array, "actions"]:
         return self.settings.exploration.deviation(iteration, self.settings.iterations)
 
-    def _agent(
-        self, environment: Environment, policy: GaussianPolicy, deviation: Array, key: Array
-    ) -> Transitions:
-        shape = (self.settings.slots, self.settings.agent_rollouts)
-        rollout = collect(environment, policy, deviation, shape, key)
-        return jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), rollout.transitions)
+    def _kept(self, rollout: Rollout) -> Transitions:
+        """The transitions of the first rollouts, (samples, ...)."""
+        first = jax.tree.map(lambda x: x[:, : self.settings.agent_rollouts], rollout.transitions)
+        return jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), first)
 
 
 class Contest(eqx.Module):
@@ -205,20 +204,21 @@ def learn_head(
         expert_logits = head.logits(experts, contest.density(experts, bound))
         agent_logits = head.logits(agents, contest.density(agents, bound))
         loss = cross_entropy(expert_logits, agent_logits)
-        penalty = gradient_penalty(head, experts, agents, key)
-        measured = (loss, jnp.mean(expert_logits > 0), jnp.mean(agent_logits < 0))
-        return loss + settings.penalty * penalty, measured
+        judged = (loss, jnp.mean(expert_logits > 0), jnp.mean(agent_logits < 0))
+        if settings.penalty == 0:
+            return loss, judged
+        return loss + settings.penalty * gradient_penalty(head, experts, agents, key), judged
 
     def step(carry, key: Array):
         head, optimiser_state = carry
         sample_key, penalty_key = jax.random.split(key)
         batches = contest.sample(settings.batch, sample_key)
-        gradient, measured = jax.grad(objective, has_aux=True)(head, *batches, penalty_key)
-        return descend(_optimiser(settings), gradient, optimiser_state, head), measured
+        gradient, judged = jax.grad(objective, has_aux=True)(head, *batches, penalty_key)
+        return descend(_optimiser(settings), gradient, optimiser_state, head), judged
 
     keys = jax.random.split(key, settings.steps)
-    (head, optimiser_state), measured = jax.lax.scan(step, (head, optimiser_state), keys)
-    return head, optimiser_state, jax.tree.map(jnp.mean, measured)
+    (head, optimiser_state), judged = jax.lax.scan(step, (head, optimiser_state), keys)
+    return head, optimiser_state, jax.tree.map(jnp.mean, judged)
 
 
 def _optimiser(settings: AIRLSettings) -> optax.GradientTransformation:

@@ -19,7 +19,7 @@ from hemma.irl.reward_features import ENERGY, INDOOR
 from hemma.rl.actions import to_power
 from hemma.rl.environment import Environment, Transitions
 from hemma.rl.exploration import Exploration, falling
-from hemma.rl.improvement import Effort, Improvement, Proximal
+from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
 from hemma.rl.policy import GaussianPolicy
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
@@ -104,7 +104,7 @@ class MaxEnt:
     def iterate(self, state: MaxEntState, task: Task[Expert]) -> tuple[MaxEntState, MaxEntProgress]:
         """One step of the reward, and one of the policy towards its best response."""
         settings, n = self.settings, state.iteration
-        key, compare_key, reward_key, improve_key = jax.random.split(state.key, 4)
+        key, compare_key, reward_key, explore_key, improve_key = jax.random.split(state.key, 5)
         policy, share = self.improvement.policy(state.learner), falling(n, settings.iterations)
 
         # The reward: what the expert gets more than the policy, in the same slots.
@@ -115,23 +115,14 @@ class MaxEnt:
 
         # The policy.
         effort = Effort(settings.exploration.deviation(n, settings.iterations), share)
-        learner, measured = self.improvement.improve(
-            state.learner,
-            task.environment,
-            lambda r: _standard(reward.batch(r.transitions)),
-            effort,
-            improve_key,
-        )
+        rollout = self.improvement.explore(state.learner, task.environment, effort, explore_key)
+        rewards = standard(reward.batch(rollout.transitions))
+        learner = self.improvement.improve(state.learner, rollout, rewards, effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
         gap = jnp.mean(reward.batch(comparison.expert)) - jnp.mean(reward.batch(comparison.agent))
-        progress = MaxEntProgress(gap, measured.reward, measured.energy_cost, measured.temperature_deviation)
+        seen = measured(rollout, rewards)
+        progress = MaxEntProgress(gap, seen.reward, seen.energy_cost, seen.temperature_deviation)
         return MaxEntState(learner, learned, average, n + 1, key), progress
-
-
-def _standard(rewards: Float[Array, "slots rollouts"]) -> Float[Array, "slots rollouts"]:
-    """Rewards with mean 0 and deviation 1: neither matters to the policy, both to its value function."""
-    fixed = jax.lax.stop_gradient(rewards)
-    return (rewards - jnp.mean(fixed)) / (jnp.std(fixed) + 1e-6)
 
 
 def linear_maxent(settings: MaxEntSettings, improvement: Improvement) -> MaxEnt:

@@ -14,7 +14,7 @@ from hemma.home import Home
 from hemma.home.checks import require
 from hemma.rl.environment import Environment, Rollout
 from hemma.rl.exploration import Exploration, falling
-from hemma.rl.improvement import Effort, Improvement, Measured, Proximal
+from hemma.rl.improvement import Effort, Improvement, Measured, Proximal, measured
 from hemma.rl.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExplicitReward, Task
@@ -88,15 +88,15 @@ class ExplicitLearning:
     def iterate(self, state: ExplicitState, task: Task[ExplicitReward]) -> tuple[ExplicitState, Measured]:
         """One improvement of the policy."""
         settings, n = self.settings, state.iteration
-        key, improve_key = jax.random.split(state.key)
+        key, explore_key, improve_key = jax.random.split(state.key, 3)
         effort = Effort(
             settings.exploration.deviation(n, settings.iterations), falling(n, settings.iterations)
         )
-        learner, measured = self.improvement.improve(
-            state.learner, task.environment, lambda r: scaled_reward(r, task), effort, improve_key
-        )
+        rollout = self.improvement.explore(state.learner, task.environment, effort, explore_key)
+        rewards = scaled_reward(rollout, task)
+        learner = self.improvement.improve(state.learner, rollout, rewards, effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
-        return ExplicitState(learner, average, n + 1, key), measured
+        return ExplicitState(learner, average, n + 1, key), measured(rollout, rewards)
 
 
 def scaled_reward(rollout: Rollout, task: Task[ExplicitReward]) -> Float[Array, "*batch"]:

@@ -1,11 +1,9 @@
 """Ways to improve a policy against any reward, whoever gives it: PPO is one."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 from jaxtyping import Float
 
@@ -14,9 +12,6 @@ from hemma.rl.environment import Environment, Rollout, collect
 from hemma.rl.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.types import Array
-
-Reward = Callable[[Rollout], Array]
-"""r of every transition of a rollout, shape (slots, rollouts)."""
 
 
 class Effort(eqx.Module):
@@ -55,10 +50,19 @@ class Improvement(Protocol):
         """The learner's policy."""
         ...
 
+    def explore(self, learner: Any, environment: Environment, effort: Effort, key: Array) -> Rollout:
+        """What the learner's policy does in ``environment``, for ``improve`` and whoever else looks."""
+        ...
+
     def improve(
-        self, learner: Any, environment: Environment, reward: Reward, effort: Effort, key: Array
-    ) -> tuple[Any, Measured]:
-        """The learner after one step towards more ``reward`` in ``environment``."""
+        self,
+        learner: Any,
+        rollout: Rollout,
+        rewards: Float[Array, "slots rollouts"],
+        effort: Effort,
+        key: Array,
+    ) -> Any:
+        """The learner after one step towards more of the ``rewards`` of the rollout, whoever gives them."""
         ...
 
 
@@ -81,16 +85,22 @@ class Proximal:
         """The policy."""
         return learner.networks.policy
 
-    def improve(
-        self, learner: ppo.Learner, environment: Environment, reward: Reward, effort: Effort, key: Array
-    ) -> tuple[ppo.Learner, Measured]:
-        """Collect rollouts and make one PPO update."""
-        collect_key, update_key = jax.random.split(key)
+    def explore(self, learner: ppo.Learner, environment: Environment, effort: Effort, key: Array) -> Rollout:
+        """Rollouts from random states."""
         shape = (self.settings.slots, self.settings.rollouts)
-        rollout = collect(environment, learner.networks.policy, effort.deviation, shape, collect_key)
-        rewards = reward(rollout)
+        return collect(environment, learner.networks.policy, effort.deviation, shape, key)
+
+    def improve(
+        self, learner: ppo.Learner, rollout: Rollout, rewards: Array, effort: Effort, key: Array
+    ) -> ppo.Learner:
+        """One PPO update."""
         objective = ppo.Objective(rewards, effort.deviation, effort.share)
-        return ppo.update(learner, rollout, objective, self.settings, update_key), measured(rollout, rewards)
+        return ppo.update(learner, rollout, objective, self.settings, key)
+
+
+def standard(rewards: Float[Array, "slots rollouts"]) -> Float[Array, "slots rollouts"]:
+    """Rewards with mean 0 and deviation 1: neither matters to the policy, both to its value function."""
+    return (rewards - jnp.mean(rewards)) / (jnp.std(rewards) + 1e-6)
 
 
 def measured(rollout: Rollout, rewards: Array) -> Measured:
