@@ -115,6 +115,22 @@ def test_only_files_that_the_old_results_named_are_taken_away(tmp_path):
     assert (folder / "notes.txt").exists()
 
 
+def test_schedules_of_a_sweep_are_taken_away_with_it(tmp_path):
+    file = tmp_path / "schedules" / "a" / "PPO-sweep-0.csv"
+    file.parent.mkdir(parents=True)
+    file.write_text("time\n")
+    point = ParetoPoint("PPO", "beta_T", 0.1, 30.0, 0.0, 1, ("schedules/a/PPO-sweep-0.csv",))
+    open_ledger(tmp_path, Head("hemma", {"x": 1}), Silence()).put(replace(home(), pareto=(point,)))
+    ledger = open_ledger(tmp_path, Head("hemma", {"x": 1}), Silence())
+    ledger.put(replace(home(), pareto=(point,)))
+    ledger.close()
+    assert file.exists()
+    ledger = open_ledger(tmp_path, Head("hemma", {"x": 2}), Silence())
+    ledger.put(home())
+    ledger.close()
+    assert not file.exists()
+
+
 @pytest.mark.parametrize("broken", ["", "{", "[]", '{"homes": 3}', '{"homes": []}'])
 def test_a_broken_results_file_does_not_stop_a_new_run(tmp_path, broken):
     (tmp_path / "results.json").write_text(broken)
@@ -176,7 +192,7 @@ def test_regret_and_pareto_stand_in_the_file():
     results = replace(
         home(),
         regret=(MethodRegret("HA-1", 3.0, 2.0, -0.5, 1.5),),
-        pareto=(ParetoPoint("PPO", "beta_T", 0.1, 30.0, math.nan, 3),),
+        pareto=(ParetoPoint("PPO", "beta_T", 0.1, 30.0, math.nan, 1, ("schedules/a/PPO-sweep-0.csv",)),),
     )
     entry = home_document(results)
     split = {"total": 3.0, "future": 2.0, "thermal_model": -0.5, "policy": 1.5}
@@ -188,7 +204,8 @@ def test_regret_and_pareto_stand_in_the_file():
             "value": 0.1,
             "energy_cost": 30.0,
             "mean_temperature_deviation": None,
-            "runs": 3,
+            "runs": 1,
+            "schedules": ["schedules/a/PPO-sweep-0.csv"],
         }
     ]
 

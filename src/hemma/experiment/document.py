@@ -75,7 +75,7 @@ def home_document(home: HomeResults) -> dict[str, Any]:
         {"days": m.days, "method": m.method, **_method_document(m.runs)} for m in home.data_efficiency
     ]
     content["regret"] = {r.method: _regret_document(r) for r in home.regret}
-    content["pareto"] = [_finite(asdict(point)) for point in home.pareto]
+    content["pareto"] = [{**_finite(asdict(p)), "schedules": list(p.schedules)} for p in home.pareto]
     return content
 
 

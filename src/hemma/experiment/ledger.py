@@ -77,4 +77,6 @@ def _files(content: Any) -> set[str]:
     if not isinstance(content, dict):
         return set()
     named = {content[key] for key in ("schedule", "curve") if isinstance(content.get(key), str)}
+    listed = content.get("schedules")
+    named |= {item for item in listed if isinstance(item, str)} if isinstance(listed, list) else set()
     return named.union(*[_files(item) for item in content.values()])

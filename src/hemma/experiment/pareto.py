@@ -65,4 +65,5 @@ class Pareto:
 def _point(series: str, parameter: str, value: float, runs: Sequence[Run]) -> ParetoPoint:
     cost = float(np.mean([run.metrics.energy_cost for run in runs]))
     deviation = float(np.mean([run.metrics.mean_temperature_deviation for run in runs]))
-    return ParetoPoint(series, parameter, value, cost, deviation, len(runs))
+    schedules = tuple(run.schedule for run in runs)
+    return ParetoPoint(series, parameter, value, cost, deviation, len(runs), schedules)

@@ -99,6 +99,8 @@ class ParetoPoint:
     mean_temperature_deviation: float
     """[degC]."""
     runs: int
+    schedules: tuple[str, ...] = ()
+    """Paths of the runs' schedules inside the folder; none for a proven optimum."""
 
 
 @dataclass(frozen=True)
