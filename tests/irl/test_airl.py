@@ -97,6 +97,12 @@ def test_gail_pays_the_probability_of_not_being_taken_for_the_agent_and_knows_no
     np.testing.assert_array_equal(head.logits(batch, jnp.ones(5)), head.logits(batch, jnp.zeros(5)))
 
 
+def test_the_penalty_falls_to_nothing_and_stays_there():
+    settings = AIRLSettings(iterations=100, penalty=0.4, relaxing=0.5)
+    weights = [float(settings.penalty_at(jnp.asarray(n))) for n in (0, 25, 50, 99)]
+    assert np.allclose(weights, [0.4, 0.2, 0.0, 0.0])
+
+
 def test_gradient_penalty_is_zero_for_a_flat_reward_and_grows_with_slope():
     reward = ShapedReward.random((16,), 0.9, jax.random.key(3))
     batches = transitions(32, 1), transitions(32, 2)
@@ -151,6 +157,7 @@ def test_foreign_days_are_refused_with_the_cure():
         ({"iterations": 30}, "iterations a multiple of 25, got 30"),
         ({"iterations": -25}, "iterations a multiple of 25, got -25"),
         ({"penalty": -1.0}, "penalty >= 0, got -1.0"),
+        ({"relaxing": 0.0}, "0 < relaxing <= 1, got 0.0"),
     ],
 )
 def test_settings_without_meaning_are_refused(change, message):

@@ -38,8 +38,10 @@ class AIRLSettings:
     """Expert and as many agent transitions an update, I / 2."""
     learning_rate: float = 5e-3
     """Of the discriminator's Adam."""
-    penalty: float = 0.0
-    """Weight of the gradient penalty; 0 leaves it out."""
+    penalty: float = 0.1
+    """Weight of the gradient penalty at first."""
+    relaxing: float = 0.5
+    """Share of the iterations over which that weight falls to 0, linearly."""
     log_density_bound: float = 10.0
     """log pi enters the logit within plus and minus this."""
     hidden: tuple[int, ...] = (64,)
@@ -56,9 +58,14 @@ class AIRLSettings:
         for name in ("learning_rate", "log_density_bound"):
             require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
         require("airl", self.penalty >= 0, "penalty >= 0", self.penalty)
+        require("airl", 0 < self.relaxing <= 1, "0 < relaxing <= 1", self.relaxing)
         require(
             "airl", all(width >= 1 for width in self.hidden), "hidden layers of at least 1 unit", self.hidden
         )
+
+    def penalty_at(self, iteration: Array) -> Float[Array, ""]:
+        """Weight of the gradient penalty at an iteration: the head is smooth first, and sharp later."""
+        return self.penalty * jnp.maximum(1.0 - iteration / (self.relaxing * self.iterations), 0.0)
 
 
 class TrainingState(eqx.Module):
@@ -143,7 +150,8 @@ class AdversarialImitation:
         # Learn the reward function of the home (lines 3 to 8).
         fresh = self._kept(rollout)
         replay = jax.tree.map(lambda old, new: old.at[n % settings.replayed].set(new), state.replay, fresh)
-        contest = Contest(task.teacher, replay, self.improvement.policy(state.learner), effort.deviation)
+        policy, penalty = self.improvement.policy(state.learner), settings.penalty_at(n)
+        contest = Contest(task.teacher, replay, policy, effort.deviation, penalty)
         head, head_optimiser, judged = learn_head(
             state.head, state.head_optimiser, contest, settings, head_key
         )
@@ -175,6 +183,8 @@ class Contest(eqx.Module):
     """Present policy: log pi of both sides is taken under it, without gradient."""
     deviation: Float[Array, "actions"]
     """Its sigma, and that of the expert's jitter."""
+    penalty: Array | float = 0.0
+    """Weight of the gradient penalty."""
 
     def density(self, transitions: Transitions, bound: float) -> Float[Array, "samples"]:
         """log pi(a|s) within plus and minus ``bound``: an action far from the mean would otherwise have an
@@ -205,9 +215,7 @@ def learn_head(
         agent_logits = head.logits(agents, contest.density(agents, bound))
         loss = cross_entropy(expert_logits, agent_logits)
         judged = (loss, jnp.mean(expert_logits > 0), jnp.mean(agent_logits < 0))
-        if settings.penalty == 0:
-            return loss, judged
-        return loss + settings.penalty * gradient_penalty(head, experts, agents, key), judged
+        return loss + contest.penalty * gradient_penalty(head, experts, agents, key), judged
 
     def step(carry, key: Array):
         head, optimiser_state = carry
