@@ -126,6 +126,8 @@ class Experiment:
             require(name, getattr(self, name) >= 1, "at least 1", getattr(self, name))
         unknown = [method for method in self.learned if method not in LEARNED]
         require("learned", not unknown, f"some of {', '.join(LEARNED)}", ", ".join(unknown))
+        most = f"agent_rollouts of at most ppo's rollouts, {self.ppo.rollouts}"
+        require("airl", self.airl.agent_rollouts <= self.ppo.rollouts, most, self.airl.agent_rollouts)
         require("forecast_horizon", self.forecast_horizon > 0, "hours > 0", self.forecast_horizon)
         require("pv", self.pv_scale >= 0, "scale >= 0", self.pv_scale)
 
