@@ -38,9 +38,9 @@ class AIRLSettings:
     """Expert and as many agent transitions an update, I / 2."""
     learning_rate: float = 5e-3
     """Of the discriminator's Adam."""
-    penalty: float = 0.1
+    penalty: float = 0.2
     """Weight of the gradient penalty at first."""
-    relaxing: float = 0.5
+    relaxing: float = 1.0
     """Share of the iterations over which that weight falls to 0, linearly."""
     log_density_bound: float = 10.0
     """log pi enters the logit within plus and minus this."""
@@ -174,7 +174,7 @@ class AdversarialImitation:
 
 
 class Contest(eqx.Module):
-    """What the discriminator has to tell apart."""
+    """What the discriminator has to tell apart, and how smoothly."""
 
     expert: Expert
     replay: Transitions
