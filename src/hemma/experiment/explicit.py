@@ -19,14 +19,15 @@ from hemma.rl.task import explicit_task, stack
 from hemma.types import Exogenous
 
 STAGE = "comfort price"
-LABEL = "PPO-sweep"
 METHODS = ("PPO", "DDPG")
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """PPO trained with several beta_T on the first part of the training period, judged on the rest."""
+    """A method trained with several beta_T on the first part of the training period, judged on the rest."""
 
+    method: str
+    """One of ``METHODS``."""
     lesson: Lesson
     trained: Trained
     prices: tuple[float, ...]
@@ -35,34 +36,36 @@ class Sweep:
     """The one that fares best on the days that the runs did not see."""
 
 
-def wants_explicit(experiment: Experiment) -> bool:
-    """Whether a method of this stage is asked for."""
-    return any(method in experiment.learned for method in METHODS)
+def explicit_methods(experiment: Experiment) -> tuple[str, ...]:
+    """Those of this stage that are asked for."""
+    return tuple(method for method in METHODS if method in experiment.learned)
 
 
-def sweep_comfort_price(case: Case, store: Store) -> Sweep:
-    """Train PPO with each beta_T, and choose one by regret and deviation on the held-out training days."""
+def sweep_comfort_price(case: Case, store: Store, method: str) -> Sweep:
+    """Train ``method`` with each beta_T; choose by regret and deviation on the held-out training days.
+
+    What suits one learner need not suit another: a critic that rounds off the edge of comfort cools the more
+    beyond it the more beta_T is.
+    """
     settings, seen = case.experiment.comfort_price, case.first_days(_seen_days(case))
     values = comfort_prices(case.home, seen, settings.multiples)
     prices = [float(value) for value in values for _ in range(settings.seeds)]
     seeds = [seed for _ in values for seed in range(settings.seeds)]
     pairs = zip(prices, seeds, strict=True)
     task = stack([explicit_task(case.home, seen, price, seed) for price, seed in pairs])
-    lesson = Lesson(LABEL, _ppo(case.experiment), task, fingerprint(STAGE, case.mark, settings))
+    basis = fingerprint(STAGE, case.mark, settings)
+    lesson = Lesson(f"{method}-sweep", _algorithm(case.experiment, method), task, basis)
     trained = train_lesson(lesson, store)
-    chosen = _chosen(case, store, trained, np.asarray(prices))
-    return Sweep(lesson, trained, tuple(prices), chosen)
+    chosen = _chosen(case, store, lesson, trained, np.asarray(prices))
+    return Sweep(method, lesson, trained, tuple(prices), chosen)
 
 
-def explicit_lessons(case: Case, comfort_price: float) -> tuple[Lesson, ...]:
-    """PPO and DDPG, as far as they are asked for, on the whole training period."""
-    experiment, days = case.experiment, case.first_days(case.training_days)
-    seeds = range(experiment.seeds)
+def explicit_lesson(case: Case, method: str, comfort_price: float) -> Lesson:
+    """``method`` on the whole training period."""
+    days, seeds = case.first_days(case.training_days), range(case.experiment.seeds)
     task = stack([explicit_task(case.home, days, comfort_price, seed) for seed in seeds])
     basis = fingerprint("explicit", case.mark, comfort_price)
-    algorithms = (("PPO", _ppo(experiment)), ("DDPG", DDPG(experiment.ddpg)))
-    wanted = [(method, algorithm) for method, algorithm in algorithms if method in experiment.learned]
-    return tuple(Lesson(method, algorithm, task, basis) for method, algorithm in wanted)
+    return Lesson(method, _algorithm(case.experiment, method), task, basis)
 
 
 def _seen_days(case: Case) -> int:
@@ -76,14 +79,15 @@ def _seen_days(case: Case) -> int:
     return min(max(wanted, 1), case.training_days - 1)
 
 
-def _ppo(experiment: Experiment) -> ExplicitLearning:
-    return ExplicitLearning(experiment.explicit)
+def _algorithm(experiment: Experiment, method: str) -> ExplicitLearning | DDPG:
+    return ExplicitLearning(experiment.explicit) if method == "PPO" else DDPG(experiment.ddpg)
 
 
-def _chosen(case: Case, store: Store, trained: Trained, prices: np.ndarray) -> float:
+def _chosen(case: Case, store: Store, lesson: Lesson, trained: Trained, prices: np.ndarray) -> float:
     """beta_T by the mean regret and deviation of its runs on the training days that they did not see."""
     mark = fingerprint(STAGE, code("rl", "baselines", "expert", "evaluation"), trained.mark)
-    content = store.kept("comfort-price", mark)
+    product = f"{lesson.label}-choice"
+    content = store.kept(product, mark)
     if content is not None:
         return content["chosen"]
     settings = case.experiment.comfort_price
@@ -98,7 +102,7 @@ def _chosen(case: Case, store: Store, trained: Trained, prices: np.ndarray) -> f
         "regret": mean_regrets.tolist(),
         "mean_temperature_deviation": mean_deviations.tolist(),
     }
-    store.keep("comfort-price", mark, [], {"chosen": chosen, "sweep": table})
+    store.keep(product, mark, [], {"chosen": chosen, "sweep": table})
     return chosen
 
 

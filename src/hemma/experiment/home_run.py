@@ -8,7 +8,7 @@ from functools import partial
 from hemma.experiment.bands import Bands, bands_lesson
 from hemma.experiment.case import Case, empty_results
 from hemma.experiment.demonstrate import Expert
-from hemma.experiment.explicit import Sweep, explicit_lessons, sweep_comfort_price, wants_explicit
+from hemma.experiment.explicit import Sweep, explicit_lesson, explicit_methods, sweep_comfort_price
 from hemma.experiment.identify import identify
 from hemma.experiment.judge import Judge
 from hemma.experiment.ledger import Ledger
@@ -66,7 +66,7 @@ class HomeRun:
             return
         if last is Stage.TRAIN:
             self._train(imitating, bands)
-            for learned in self._paid()[1]:
+            for _, learned in self._paid():
                 train_lesson(learned.lesson, self.store)
             return
         self._measure(results, expert, imitating, bands)
@@ -87,13 +87,14 @@ class HomeRun:
             trained |= {lesson.label: one for lesson, one in zip(same, made, strict=True)}
         return trained
 
-    def _paid(self) -> tuple[Sweep | None, list[Learned]]:
-        """The methods that learn from the explicit reward, and the sweep that set its beta_T."""
-        if not wants_explicit(self.case.experiment):
-            return None, []
-        sweep = sweep_comfort_price(self.case, self.store)
-        made = explicit_lessons(self.case, sweep.chosen)
-        return sweep, [Learned(lesson.label, lesson) for lesson in made]
+    def _paid(self) -> list[tuple[Sweep, Learned]]:
+        """The methods that learn from the explicit reward, each with the sweep that set its beta_T."""
+        paid = []
+        for method in explicit_methods(self.case.experiment):
+            sweep = sweep_comfort_price(self.case, self.store, method)
+            lesson = explicit_lesson(self.case, method, sweep.chosen)
+            paid.append((sweep, Learned(method, lesson)))
+        return paid
 
     def _measure(
         self, results: HomeResults, expert: Expert, imitating: Sequence[Learned], bands: Bands | None
@@ -106,14 +107,15 @@ class HomeRun:
         trained = self._train(imitating, bands)
         for learned in imitating:
             results = self._learned(results, judge, learned, trained[learned.lesson.label])
-        sweep, paid = self._paid()
-        for learned in paid:
+        paid = self._paid()
+        for _, learned in paid:
             results = self._learned(results, judge, learned, train_lesson(learned.lesson, self.store))
         results = self._put(replace(results, regret=split_regrets(judge, results.methods)))
         pareto = Pareto(judge)
         runs = [run.metrics.total_temperature_deviation for method in methods for run in method.runs]
         points = pareto.frontier(max(runs))
-        points += () if sweep is None else pareto.comfort_prices(sweep)
+        for sweep, _ in paid:
+            points += pareto.comfort_prices(sweep)
         if bands is not None:
             usual = next(method.runs for method in results.methods if method.method == "HA-1")
             points += pareto.comfort_bands(bands, trained[bands.lesson.label], usual)

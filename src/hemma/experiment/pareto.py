@@ -38,13 +38,13 @@ class Pareto:
         return tuple(points)
 
     def comfort_prices(self, sweep: Sweep) -> tuple[ParetoPoint, ...]:
-        """PPO with each beta_T, trained on the first part of the training period."""
+        """A method with each beta_T, trained on the first part of the training period."""
         lesson, trained = sweep.lesson, sweep.trained
         runs = self.judge.judged(lesson.label, trained.mark, partial(play, self.judge.case, lesson, trained))
         points = []
         for price in dict.fromkeys(sweep.prices):
             same = [run for own, run in zip(sweep.prices, runs, strict=True) if own == price]
-            points.append(_point("PPO", "beta_T", price, same))
+            points.append(_point(sweep.method, "beta_T", price, same))
         return tuple(points)
 
     def comfort_bands(self, bands: Bands, trained: Trained, usual: Sequence[Run]) -> tuple[ParetoPoint, ...]:
