@@ -28,7 +28,7 @@ def tasks() -> list[Task]:
     days = load_austin2021(1).window(0, 24 * DAYS).exogenous
     shown = demonstrate(home, home, days)
     demonstrated = Demonstrated(shown.states, shown.actions, shown.next_states)
-    return [make_task(home, days, demonstrated, seed) for seed in range(max(RUNS))]
+    return [make_task(home, home, days, demonstrated, seed) for seed in range(max(RUNS))]
 
 
 def seconds(run: training.Training, task: Task, learner: AdversarialImitation) -> float:

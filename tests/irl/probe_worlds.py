@@ -8,7 +8,7 @@ import numpy as np
 from hemma.home import Home, observe, paper_state
 from hemma.irl.reward_features import LinearReward, RewardFeatures
 from hemma.rl.environment import Transitions
-from hemma.rl.improvement import Effort, Proximal
+from hemma.rl.improvement import Effort, Proximal, standard
 from hemma.rl.policy import PolicyController
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import Demonstrated, make_task
@@ -68,12 +68,12 @@ def idle_rule(observation):
 def ruled_task(rule, seed=0, days=5):
     """The task of imitating ``rule``."""
     home, exogenous = Home(), traces(days)
-    return make_task(home, exogenous, demonstrate(home, exogenous, rule), seed)
+    return make_task(home, home, exogenous, demonstrate(home, exogenous, rule), seed)
 
 
 def imitation_task(shown, scaler, seed=0, days=5):
     """The task of imitating what was shown on those days, seen through a scaler that is already known."""
-    task = make_task(Home(), traces(days), shown, seed)
+    task = make_task(Home(), Home(), traces(days), shown, seed)
     seen = Transitions(scaler(shown.states), task.teacher.transitions.fractions, scaler(shown.next_states))
     return eqx.tree_at(lambda t: (t.environment.scaler, t.teacher.transitions), task, (scaler, seen))
 
@@ -94,10 +94,11 @@ def best_response(reward, task, updates, seed=7):
 
     def update(learner, inputs):
         key, step = inputs
+        explore_key, improve_key = jax.random.split(key)
         effort = Effort(SIGMA, 1.0 - 0.9 * step / updates)
-        return PPO.improve(learner, task.environment, lambda r: reward.batch(r.transitions), effort, key)[
-            0
-        ], None
+        rollout = PPO.explore(learner, task.environment, effort, explore_key)
+        rewards = standard(reward.batch(rollout.transitions))
+        return PPO.improve(learner, rollout, rewards, effort, improve_key), None
 
     keys = jax.random.split(jax.random.key(seed), updates)
     start = PPO.start(jax.random.key(seed + 1))

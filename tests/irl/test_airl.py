@@ -148,7 +148,7 @@ def test_seeds_give_different_policies():
 
 def test_foreign_days_are_refused_with_the_cure():
     with pytest.raises(HemmaError, match="expected 47 transitions for traces of 48 slots, got 71"):
-        make_task(Home(), traces(2), demonstrate(Home(), traces(3), price_rule), 0)
+        make_task(Home(), Home(), traces(2), demonstrate(Home(), traces(3), price_rule), 0)
 
 
 @pytest.mark.parametrize(

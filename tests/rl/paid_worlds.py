@@ -27,7 +27,7 @@ def two_price_traces(days=6):
 def played(learner, comfort_price) -> Step:
     """Every slot of the days that ``learner`` learned from, by its result without exploration."""
     home, traces = Home(), two_price_traces()
-    task = stack([explicit_task(home, traces, comfort_price, 0)])
+    task = stack([explicit_task(home, home, traces, comfort_price, 0)])
     trained = training.train(task, learner)
     controller = jax.tree.map(lambda x: x[0], training.controllers(trained, task, learner))
     exogenous = jax.tree.map(lambda x: jnp.asarray(x, float), traces)

@@ -48,7 +48,7 @@ def test_learners_see_the_same_numbers_in_any_currency():
     home = Home()
     rewards = []
     for traces, price in ((dollars, 0.5), (crowns, 5.5)):
-        task = explicit_task(home, traces, price, 0)
+        task = explicit_task(home, home, traces, price, 0)
         policy = GaussianPolicy((8,), jax.random.key(0))
         rollout = collect(task.environment, policy, jnp.asarray([0.3, 0.3]), (12, 4), jax.random.key(1))
         ageing = rollout.costs.ageing  # k_e is a price too, and stays in dollars here
@@ -66,7 +66,7 @@ def test_learners_see_the_same_numbers_in_any_currency():
 def test_learners_are_paid_the_reward_but_for_what_no_policy_changes_day_by_day():
     """In currency, and with u (l - p) dt taken out, the sums differ by the worth of what is left in store."""
     traces, home = two_price_traces(), Home()
-    task = explicit_task(home, traces, 0.5, 0)
+    task = explicit_task(home, home, traces, 0.5, 0)
     policy = GaussianPolicy((8,), jax.random.key(0))
     rollout = collect(task.environment, policy, jnp.asarray([0.8, 0.8]), (12, 4), jax.random.key(1))
     price = float(usual_price(task.environment))
@@ -84,7 +84,7 @@ def test_the_usual_price_hardly_knows_scarcity():
     spiked = np.asarray(traces.buying_price).copy()
     spiked[3] = 100.0
     tasks = (
-        explicit_task(Home(), dataclasses.replace(traces, buying_price=price), 0.5, 0)
+        explicit_task(Home(), Home(), dataclasses.replace(traces, buying_price=price), 0.5, 0)
         for price in (traces.buying_price, spiked)
     )
     ordinary, scarce = (float(usual_price(task.environment)) for task in tasks)
@@ -93,8 +93,8 @@ def test_the_usual_price_hardly_knows_scarcity():
 
 
 def test_neither_the_unit_nor_the_usual_price_reads_padding():
-    long = explicit_task(Home(), two_price_traces(6), 0.5, 0)
-    short = explicit_task(Home(), two_price_traces(2), 0.5, 0)
+    long = explicit_task(Home(), Home(), two_price_traces(6), 0.5, 0)
+    short = explicit_task(Home(), Home(), two_price_traces(2), 0.5, 0)
     padded = jax.tree.map(lambda x: x[1], stack([long, short]))
     for measure in (usual_price, reward_unit):
         np.testing.assert_allclose(measure(padded.environment), measure(short.environment), rtol=1e-6)

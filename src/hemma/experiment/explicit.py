@@ -9,6 +9,7 @@ from hemma.baselines.optimum import optimum_problem
 from hemma.errors import HemmaError
 from hemma.evaluation import evaluate_stacked
 from hemma.experiment.case import Case
+from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.settings import Experiment
 from hemma.experiment.store import Store
@@ -41,30 +42,33 @@ def explicit_methods(experiment: Experiment) -> tuple[str, ...]:
     return tuple(method for method in METHODS if method in experiment.learned)
 
 
-def sweep_comfort_price(case: Case, store: Store, method: str) -> Sweep:
+def sweep_comfort_price(expert: Expert, store: Store, method: str) -> Sweep:
     """Train ``method`` with each beta_T; choose by regret and deviation on the held-out training days.
 
     What suits one learner need not suit another: a critic that rounds off the edge of comfort cools the more
     beyond it the more beta_T is.
     """
+    case = expert.case
     settings, seen = case.experiment.comfort_price, case.first_days(_seen_days(case))
     values = comfort_prices(case.home, seen, settings.multiples)
     prices = [float(value) for value in values for _ in range(settings.seeds)]
     seeds = [seed for _ in values for seed in range(settings.seeds)]
     pairs = zip(prices, seeds, strict=True)
-    task = stack([explicit_task(case.home, seen, price, seed) for price, seed in pairs])
-    basis = fingerprint(STAGE, case.mark, settings)
+    planning_home, home = expert.planning_home, case.home
+    task = stack([explicit_task(planning_home, home, seen, price, seed) for price, seed in pairs])
+    basis = fingerprint(STAGE, case.mark, expert.identification.mark, settings)
     lesson = Lesson(f"{method}-sweep", _algorithm(case.experiment, method), task, basis)
     trained = train_lesson(lesson, store)
     chosen = _chosen(case, store, lesson, trained, np.asarray(prices))
     return Sweep(method, lesson, trained, tuple(prices), chosen)
 
 
-def explicit_lesson(case: Case, method: str, comfort_price: float) -> Lesson:
+def explicit_lesson(expert: Expert, method: str, comfort_price: float) -> Lesson:
     """``method`` on the whole training period."""
+    case, planning_home = expert.case, expert.planning_home
     days, seeds = case.first_days(case.training_days), range(case.experiment.seeds)
-    task = stack([explicit_task(case.home, days, comfort_price, seed) for seed in seeds])
-    basis = fingerprint("explicit", case.mark, comfort_price)
+    task = stack([explicit_task(planning_home, case.home, days, comfort_price, seed) for seed in seeds])
+    basis = fingerprint("explicit", case.mark, expert.identification.mark, comfort_price)
     return Lesson(method, _algorithm(case.experiment, method), task, basis)
 
 

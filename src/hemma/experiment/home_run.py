@@ -66,7 +66,7 @@ class HomeRun:
             return
         if last is Stage.TRAIN:
             self._train(imitating, bands)
-            for _, learned in self._paid():
+            for _, learned in self._paid(expert):
                 train_lesson(learned.lesson, self.store)
             return
         self._measure(results, expert, imitating, bands)
@@ -87,12 +87,12 @@ class HomeRun:
             trained |= {lesson.label: one for lesson, one in zip(same, made, strict=True)}
         return trained
 
-    def _paid(self) -> list[tuple[Sweep, Learned]]:
+    def _paid(self, expert: Expert) -> list[tuple[Sweep, Learned]]:
         """The methods that learn from the explicit reward, each with the sweep that set its beta_T."""
         paid = []
         for method in explicit_methods(self.case.experiment):
-            sweep = sweep_comfort_price(self.case, self.store, method)
-            lesson = explicit_lesson(self.case, method, sweep.chosen)
+            sweep = sweep_comfort_price(expert, self.store, method)
+            lesson = explicit_lesson(expert, method, sweep.chosen)
             paid.append((sweep, Learned(method, lesson)))
         return paid
 
@@ -107,7 +107,7 @@ class HomeRun:
         trained = self._train(imitating, bands)
         for learned in imitating:
             results = self._learned(results, judge, learned, trained[learned.lesson.label])
-        paid = self._paid()
+        paid = self._paid(expert)
         for _, learned in paid:
             results = self._learned(results, judge, learned, train_lesson(learned.lesson, self.store))
         results = self._put(replace(results, regret=split_regrets(judge, results.methods)))

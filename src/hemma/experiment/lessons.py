@@ -83,7 +83,10 @@ def lessons(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation
     shown = {days: demonstration(store, expert, days) for days in dict.fromkeys(one.days for one in wanted)}
     runs = [(shown[one.days], seed) for one in wanted for seed in range(one.seeds)]
     together = task.stack(
-        [make_task(case.home, case.first_days(d.days), d.demonstrated, seed) for d, seed in runs]
+        [
+            make_task(expert.planning_home, case.home, case.first_days(d.days), d.demonstrated, seed)
+            for d, seed in runs
+        ]
     )
     ends = list(accumulate(one.seeds for one in wanted))
     return tuple(

@@ -38,7 +38,7 @@ class AIRLSettings:
     """Expert and as many agent transitions an update, I / 2."""
     learning_rate: float = 5e-3
     """Of the discriminator's Adam."""
-    penalty: float = 0.2
+    penalty: float = 0.0
     """Weight of the gradient penalty at first."""
     relaxing: float = 1.0
     """Share of the iterations over which that weight falls to 0, linearly."""

@@ -16,7 +16,6 @@ from hemma.home import HomeState
 from hemma.home.checks import require
 from hemma.irl.maxent_rewards import Comparison, LinearMaxEnt, NeuralMaxEnt, RewardLearner
 from hemma.irl.reward_features import ENERGY, INDOOR
-from hemma.rl.actions import to_power
 from hemma.rl.environment import Environment, Transitions
 from hemma.rl.exploration import Exploration, falling
 from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
@@ -155,8 +154,7 @@ def compare(
     def act(state: HomeState, start: Array, features: Array, disturbance: Array):
         slot = start + state.slot
         fractions = policy.mean(features)
-        action = to_power(environment.home, state.battery_energy, fractions)
-        step = environment.home.step(state, environment.at(slot), action, disturbance)
+        step = environment.step(state, start, fractions, disturbance)
         return step.state, Transitions(features, fractions, environment.features(step.state, slot + 1))
 
     def slot(carry: tuple[HomeState, Array], disturbance: Array):

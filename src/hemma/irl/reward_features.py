@@ -50,13 +50,13 @@ class RewardFeatures(eqx.Module):
     level_at_cosine: Float[Array, "*batch"]
     """cos(2 pi t'/24) E'."""
     hvac: Float[Array, "*batch"]
-    """a_h: HVAC power."""
+    """a_h: more HVAC power than comfort needs."""
     hvac_squared: Float[Array, "*batch"]
-    """a_h^2: even HVAC power."""
+    """a_h^2: HVAC power other than what comfort needs."""
     hvac_at_price: Float[Array, "*batch"]
-    """u a_h: HVAC power while it is dear."""
+    """u a_h: more than comfort needs while power is dear."""
     hvac_in_heat: Float[Array, "*batch"]
-    """T_out a_h: HVAC power while it is hot outside."""
+    """T_out a_h: more than comfort needs while it is hot outside."""
     warmer: Float[Array, "*batch"]
     """[T']^+: a home warmer than the expert's usually is."""
     colder: Float[Array, "*batch"]

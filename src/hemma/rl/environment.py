@@ -4,7 +4,7 @@ import equinox as eqx
 import jax
 from jaxtyping import Float, Int
 
-from hemma.home import Home, HomeState, observe, paper_state
+from hemma.home import Home, HomeState, Step, observe, paper_state
 from hemma.rl.actions import to_power
 from hemma.rl.policy import GaussianPolicy, log_density
 from hemma.rl.scaling import StateScaler
@@ -39,7 +39,11 @@ class Environment(eqx.Module):
     clock goes on where it was.
     """
 
+    planning_home: Home
+    """The home as far as the learner knows it, with an identified thermal model: what turns its fractions
+    into powers."""
     home: Home
+    """The home that reacts."""
     exogenous: Exogenous
     available: Int[Array, ""]
     """How many slots of ``exogenous`` may be replayed; what lies behind them is padding and never read."""
@@ -65,6 +69,12 @@ class Environment(eqx.Module):
         """The scaled state of the paper when the home stands at the start of ``slot``."""
         return self.scaler(paper_state(observe(state, self.at(slot))))
 
+    def step(self, state: HomeState, start: Array, fractions: Array, disturbance: Array) -> Step:
+        """One slot of a rollout that began in the slot ``start``."""
+        now = self.at(start + state.slot)
+        action = to_power(self.planning_home, observe(state, now), fractions)
+        return self.home.step(state, now, action, disturbance)
+
 
 def collect(
     environment: Environment,
@@ -85,8 +95,7 @@ def collect(
         slot = start + state.slot
         mean = policy.mean(features)
         fractions = mean + noise
-        action = to_power(environment.home, state.battery_energy, fractions)
-        step = environment.home.step(state, environment.at(slot), action, disturbance)
+        step = environment.step(state, start, fractions, disturbance)
         after = environment.features(step.state, slot + 1)
         density = log_density(fractions, mean, deviation)
         return step.state, Rollout(Transitions(features, fractions, after), density, step.costs)

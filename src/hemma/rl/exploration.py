@@ -15,9 +15,9 @@ from hemma.types import Array
 class Exploration:
     """sigma, the standard deviation of the policy's fractions, over the iterations, and the averaging."""
 
-    first_deviation: tuple[float, float] = (0.2, 0.15)
+    first_deviation: tuple[float, float] = (0.2, 0.1)
     """sigma at the first iteration, of battery and HVAC."""
-    last_deviation: tuple[float, float] = (0.2, 0.05)
+    last_deviation: tuple[float, float] = (0.2, 0.1)
     """sigma once it has shrunk, geometrically, over the first ``shrinking`` of the iterations."""
     shrinking: float = 0.8
     """Share of the iterations over which sigma shrinks."""

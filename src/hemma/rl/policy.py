@@ -71,10 +71,10 @@ class PolicyController(eqx.Module):
 
     policy: Policy
     scaler: StateScaler
-    home: Home
-    """Limits of battery and HVAC, to turn fractions into powers."""
+    planning_home: Home
+    """The home as far as it is known, to turn fractions into powers: its limits, and a thermal model."""
 
     def __call__(self, observation: Observation, key: Array) -> Action:
         """The action (e, h) [kW]."""
         fractions = self.policy.mean(self.scaler(paper_state(observation)))
-        return to_power(self.home, observation.battery_energy, fractions)
+        return to_power(self.planning_home, observation, fractions)

@@ -15,10 +15,7 @@ from hemma.home import Home
 from hemma.rl.actions import to_fractions
 from hemma.rl.environment import Environment, Transitions
 from hemma.rl.scaling import StateScaler, fit_scaler
-from hemma.types import Action, Array, Costs, Exogenous
-
-ENERGY = 2
-"""Position of E in the paper's state."""
+from hemma.types import Action, Array, Costs, Exogenous, Observation
 
 
 class Demonstrated(eqx.Module):
@@ -75,10 +72,13 @@ class Task(eqx.Module, Generic[Teacher]):
         return jax.random.fold_in(jax.random.key(self.seed), self.stream)
 
 
-def make_task(home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed: int) -> Task[Expert]:
+def make_task(
+    planning_home: Home, home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed: int
+) -> Task[Expert]:
     """The task of learning from ``demonstrated`` and the traces ``exogenous`` of the same days, nothing else.
 
-    The scaler is fitted to the demonstrated states.
+    ``planning_home`` is ``home`` with an identified thermal model: it turns the learner's fractions into
+    powers, and the expert's powers into fractions. The scaler is fitted to the demonstrated states.
     """
     if len(demonstrated.actions) != exogenous.slots - 1:
         raise HemmaError(
@@ -87,21 +87,25 @@ def make_task(home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed
         )
     scaler = fit_scaler(np.asarray(demonstrated.states))
     actions = Action(*jnp.asarray(demonstrated.actions, float).T)
-    energy = jnp.asarray(demonstrated.states, float)[:, ENERGY]
+    states = jnp.asarray(demonstrated.states, float)
     transitions = Transitions(
-        features=scaler(jnp.asarray(demonstrated.states, float)),
-        fractions=to_fractions(home, energy, actions),
+        features=scaler(states),
+        fractions=to_fractions(planning_home, _observed(states), actions),
         next_features=scaler(jnp.asarray(demonstrated.next_states, float)),
     )
     expert = Expert(transitions, jnp.asarray(len(demonstrated.actions)))
-    return Task(_environment(home, exogenous, scaler), expert, jnp.asarray(seed), _stream(exogenous))
+    environment = _environment(planning_home, home, exogenous, scaler)
+    return Task(environment, expert, jnp.asarray(seed), _stream(exogenous))
 
 
-def explicit_task(home: Home, exogenous: Exogenous, comfort_price: float, seed: int) -> Task[ExplicitReward]:
+def explicit_task(
+    planning_home: Home, home: Home, exogenous: Exogenous, comfort_price: float, seed: int
+) -> Task[ExplicitReward]:
     """The task of learning from the explicit reward with beta_T = ``comfort_price`` on these days.
 
-    The scaler is fitted to the traces, and to battery energies and indoor temperatures as rollouts start
-    with: spread evenly over the battery's range, and over the comfort band and one degree beyond.
+    ``planning_home`` is as in ``make_task``. The scaler is fitted to the traces, and to battery energies and
+    indoor temperatures as rollouts start with: spread evenly over the battery's range, and over the comfort
+    band and one degree beyond.
     """
     battery, comfort = home.battery, home.comfort
     spread = np.linspace(0.0, 1.0, exogenous.slots)
@@ -117,7 +121,8 @@ def explicit_task(home: Home, exogenous: Exogenous, comfort_price: float, seed: 
     )
     scaler = fit_scaler(np.stack([np.asarray(column, float) for column in columns], axis=1))
     reward = ExplicitReward(jnp.asarray(comfort_price, float))
-    return Task(_environment(home, exogenous, scaler), reward, jnp.asarray(seed), _stream(exogenous))
+    environment = _environment(planning_home, home, exogenous, scaler)
+    return Task(environment, reward, jnp.asarray(seed), _stream(exogenous))
 
 
 def stack(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
@@ -144,10 +149,18 @@ def side_by_side(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
     return jax.tree.map(together, *tasks)
 
 
-def _environment(home: Home, exogenous: Exogenous, scaler: StateScaler) -> Environment:
-    traces = jax.tree.map(lambda x: jnp.asarray(x, float), exogenous)
-    home = jax.tree.map(lambda x: jnp.asarray(x, float), home)
-    return Environment(home, traces, jnp.asarray(exogenous.slots), scaler)
+def _environment(planning_home: Home, home: Home, exogenous: Exogenous, scaler: StateScaler) -> Environment:
+    planning_home, home, traces = jax.tree.map(
+        lambda x: jnp.asarray(x, float), (planning_home, home, exogenous)
+    )
+    return Environment(planning_home, home, traces, jnp.asarray(exogenous.slots), scaler)
+
+
+def _observed(states: Float[Array, "samples 7"]) -> Observation:
+    """What a controller saw in the paper's states; the HVAC power of the slot before is not among them."""
+    pv, load, energy, outdoor, indoor, price, hour = states.T
+    slots = jnp.arange(len(states))
+    return Observation(pv, load, energy, outdoor, indoor, price, hour, jnp.zeros_like(pv), slots)
 
 
 def _stream(exogenous: Exogenous) -> UInt[Array, ""]:

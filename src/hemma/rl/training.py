@@ -125,7 +125,7 @@ def load(path: Path, task: Task, algorithm: Algorithm) -> Training:
 def controllers(training: Training, task: Task, algorithm: Algorithm) -> PolicyController:
     """The resulting policies as controllers, stacked like the task."""
     policies = eqx.filter_vmap(algorithm.policy)(training.state)
-    return PolicyController(policies, task.environment.scaler, task.environment.home)
+    return PolicyController(policies, task.environment.scaler, task.environment.planning_home)
 
 
 def _side_by_side(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Curve]:
@@ -169,7 +169,7 @@ def _chunk(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Curve]:
 def _score(policy: Policy, environment: Environment) -> tuple[Array, Array]:
     """Daily cost and mean deviation of the mean action on the training traces, padding left out."""
     home, traces = environment.home, environment.exogenous
-    controller = PolicyController(policy, environment.scaler, home)
+    controller = PolicyController(policy, environment.scaler, environment.planning_home)
 
     def slot(state: HomeState, now) -> tuple[HomeState, Step]:
         action = controller(observe(state, now), jax.random.key(0))
