@@ -14,18 +14,23 @@ from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.irl.cloning import BehaviourCloning, CloningSettings, cloning_loss, residual, split_days
 from hemma.rl import training
+from hemma.rl.actions import to_power
 from hemma.rl.policy import GaussianPolicy
 from hemma.rl.task import stack
-from hemma.types import Action
 
 SMALL = CloningSettings(iterations=50, batch=64, hidden=(16,))
 LEARNER = BehaviourCloning(SMALL)
 
 
+def hvac_fraction(outdoor):
+    """0, the comfort action, on a mild night of 23 degC, full power from 33 degC on, and affine between."""
+    return jnp.clip(0.1 * (outdoor - 23), 0.0, 1.0)
+
+
 def hvac_law(observation):
-    """An affine law that ends at off and at full power, as holding a temperature does."""
-    power = jnp.clip(0.25 * (observation.outdoor_temperature - 26), 0.0, 2.0)
-    return Action(jnp.zeros_like(power), power)
+    """That, and the battery at rest."""
+    hvac = hvac_fraction(observation.outdoor_temperature)
+    return to_power(Home(), observation, jnp.stack([jnp.zeros_like(hvac), hvac], axis=-1))
 
 
 def test_an_action_at_a_bound_asks_for_no_more_than_the_bound():
@@ -68,14 +73,15 @@ def test_short_demonstrations_hold_out_a_part_of_a_day():
 
 
 def test_an_expert_with_a_bounded_affine_law_is_found():
-    """HVAC power off, on and in between: the mean is the law where the law is within the bounds."""
+    """HVAC as comfort asks, full, and in between: the mean is the law where the law is within the bounds."""
     task = stack([ruled_task(hvac_law, days=10)])
     learner = BehaviourCloning(dataclasses.replace(SMALL, iterations=200, learning_rate=1e-2))
     trained = training.train(task, learner)
-    controller = jax.tree.map(lambda x: x[0], training.controllers(trained, task, learner))
-    unseen = demonstrate(Home(), traces(4, seed=9), hvac_law)
-    acted = demonstrate(Home(), traces(4, seed=9), lambda o: controller(o, jax.random.key(0)))
-    np.testing.assert_allclose(acted.actions, unseen.actions, atol=0.05)
+    policy, scaler = jax.tree.map(lambda x: x[0], (trained.state.best, task.environment.scaler))
+    unseen = demonstrate(Home(), traces(4, seed=9), hvac_law).states
+    found = jnp.clip(jax.vmap(policy.mean)(scaler(unseen)), -1.0, 1.0)
+    np.testing.assert_allclose(found[:, 0], 0.0, atol=0.05)
+    np.testing.assert_allclose(found[:, 1], hvac_fraction(unseen[:, 3]), atol=0.05)
 
 
 def test_the_result_is_the_best_on_the_held_out_days():
