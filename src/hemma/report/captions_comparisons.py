@@ -33,7 +33,7 @@ def words_of_pareto(home: HomeResults) -> Words:
         "cost-and-comfort",
         "Cost against comfort",
         f"Energy cost at mean deviation. Methods: {methods}. Sweeps: {swept or 'none'}.",
-        f"{frontier}Down is cheaper, left is more comfortable. A swept line shows what one method reaches "
+        f"{frontier}Down is cheaper, left is more comfortable. The small marks show what one method reaches "
         "when the weight of comfort, or the band that it is given, is changed.",
     )
 

@@ -124,11 +124,19 @@ def _cut(methods: Sequence[Standing], sweeps: Sequence[Sweep]) -> float:
 def _draw(axes: Axes, sweeps: Sequence[Sweep], methods: Sequence[Standing]) -> None:
     axes.set_xscale("symlog", linthresh=LINEAR_BELOW, linscale=0.5)
     for sweep in sweeps:
-        look = look_of(sweep.name)
-        style = "-" if sweep.name == FRONTIER else look.line
-        x, y = sweep.track.T
+        look, (x, y) = look_of(sweep.name), sweep.track.T
+        # Between two points of a sweep there is nothing: a line would seem to cross the proven one.
+        style, marker, size = ("-", ".", 4) if sweep.name == FRONTIER else ("none", look.marker, 3.5)
         axes.plot(
-            x, y, color=look.colour, linestyle=style, marker=".", ms=4, lw=1.3, label=sweep.legend, alpha=0.8
+            x,
+            y,
+            color=look.colour,
+            linestyle=style,
+            marker=marker,
+            ms=size,
+            lw=1.3,
+            label=sweep.legend,
+            alpha=0.8,
         )
     for method in methods:
         look = look_of(method.name)
