@@ -45,10 +45,12 @@ def homes_figure(results: Results) -> Figure:
     axes = figure.add_subplot()
     for method, place in rows.places.items():
         _draw_homes(axes, place, shares[method], list(results.finished))
+        _write_homes_below(axes, place, shares[method], over_homes(results, method).mean)
         _draw_mean(axes, place, over_homes(results, method), look_of(method).colour)
         top = max([*shares[method].values(), *(over_homes(results, method).interval or ()), LOWEST])
         mean = over_homes(results, method).mean
-        write_value(axes, place, top, "" if mean is None else percent(mean))
+        if mean is not None and top > LOWEST:
+            write_value(axes, place, top, percent(mean))
     label_rows(axes, rows)
     axes.axvline(1.0, color=INK, lw=1.2, linestyle=look_of("optimum").line)
     axes.axvline(0.0, color=FAINT, lw=0.9)
@@ -70,10 +72,17 @@ def _draw_homes(axes: Axes, place: float, by_home: dict[str, float], homes: list
         if share is not None and share >= LOWEST:
             marker = _marker(number)
             axes.plot(share, place + 0.16, marker, color=FAINT, alpha=0.75, markersize=4.5, mew=0, zorder=3)
+
+
+def _write_homes_below(axes: Axes, place: float, by_home: dict[str, float], mean: float | None) -> None:
+    """What lies beyond the axis, in words: the homes there, and the mean if it lies there, too."""
     below = sorted(share for share in by_home.values() if share < LOWEST)
-    if below:
-        ends = [percent(share) for share in dict.fromkeys((below[0], below[-1]))]
-        axes.text(LOWEST, place, f"◂ {' to '.join(ends)}", va="center", fontsize=7.5, color=FAINT)
+    if not below:
+        return
+    words = " to ".join(percent(share) for share in dict.fromkeys((below[0], below[-1])))
+    if mean is not None and len(below) == len(by_home) > 1:
+        words = f"{percent(mean)} ({words})"
+    axes.text(LOWEST, place, f"◂ {words}", va="center", fontsize=7.5, color=FAINT)
 
 
 def _draw_mean(axes: Axes, place: float, found: Aggregated, colour: str) -> None:
