@@ -33,7 +33,7 @@ class Rollout(eqx.Module):
 
 
 class Environment(eqx.Module):
-    """A home and the traces it replays, seen through a scaler.
+    """A home, what is known of it, and the traces it replays, seen through a scaler.
 
     It never terminates: after the last slot of the traces comes the first. Replay whole days, so that the
     clock goes on where it was.

@@ -30,9 +30,9 @@ class Policy(Protocol):
 class GaussianPolicy(eqx.Module):
     """A Gaussian over action fractions with a simple mean: HVAC affine in the features, battery by a network.
 
-    Holding a temperature is an affine law of T_in and T_out that ends at off and at full power, and it must
-    go on beyond the hottest training day; a network would bend it there. So both means are bent at -1 and 1
-    only, and keep a little slope beyond for the gradient. The fractions that are sampled are not bounded: the
+    The HVAC's fraction corrects the comfort action (``hemma.rl.actions``), and the correction must go on
+    beyond the hottest training day; a network would bend it there. Both means are bent at -1 and 1 only, and
+    keep a little slope beyond for the gradient. The fractions that are sampled are not bounded: the
     home takes those beyond [-1, 1] as the bound, and the density stays that of the sample, so log pi is
     finite everywhere (see ``hemma.rl.actions``).
     """
