@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 
 import equinox as eqx
 
-from hemma.experiment.demonstrate import Demonstration, Expert, demonstration
+from hemma.experiment.demonstrate import Expert, demonstration
 from hemma.experiment.fingerprint import fingerprint
-from hemma.experiment.lessons import airl
+from hemma.experiment.lessons import airl, demonstrated_task
 from hemma.experiment.store import Store
 from hemma.experiment.train import Lesson
 from hemma.home import ComfortBand, Home
-from hemma.rl.task import Task, make_task, stack
+from hemma.rl.task import stack
 
 LABEL = "HA-1-bands"
 
@@ -58,11 +58,6 @@ def shifted_experts(expert: Expert, relaxations: Sequence[float]) -> tuple[Shift
     return tuple(bands)
 
 
-def _task(expert: Expert, shown: Demonstration, seed: int) -> Task:
-    case = expert.case
-    return make_task(expert.planning_home, case.home, case.first_days(shown.days), shown.demonstrated, seed)
-
-
 def bands_lesson(expert: Expert, store: Store) -> Bands | None:
     """The experts of all moved bands demonstrate, if any are asked for and HA-1 is."""
     experiment = expert.case.experiment
@@ -71,7 +66,7 @@ def bands_lesson(expert: Expert, store: Store) -> Bands | None:
         return None
     shown = [demonstration(store, band.expert, experiment.demonstration_days) for band in bands]
     tasks = [
-        _task(band.expert, d, seed)
+        demonstrated_task(band.expert, d, seed)
         for band, d in zip(bands, shown, strict=True)
         for seed in range(experiment.pareto.seeds)
     ]

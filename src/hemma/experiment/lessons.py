@@ -18,7 +18,7 @@ from hemma.irl.maxent import linear_maxent, neural_maxent
 from hemma.irl.reward import ImitationScore
 from hemma.rl import task
 from hemma.rl.improvement import Proximal
-from hemma.rl.task import make_task
+from hemma.rl.task import Task, make_task
 from hemma.rl.training import Algorithm
 
 ANY_LENGTH = "AIRL"
@@ -82,12 +82,7 @@ def lessons(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation
         return ()
     shown = {days: demonstration(store, expert, days) for days in dict.fromkeys(one.days for one in wanted)}
     runs = [(shown[one.days], seed) for one in wanted for seed in range(one.seeds)]
-    together = task.stack(
-        [
-            make_task(expert.planning_home, case.home, case.first_days(d.days), d.demonstrated, seed)
-            for d, seed in runs
-        ]
-    )
+    together = task.stack([demonstrated_task(expert, d, seed) for d, seed in runs])
     ends = list(accumulate(one.seeds for one in wanted))
     return tuple(
         Lesson(
@@ -98,6 +93,12 @@ def lessons(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation
         )
         for one, part in zip(wanted, zip([0, *ends], ends, strict=False), strict=True)
     )
+
+
+def demonstrated_task(expert: Expert, shown: Demonstration, seed: int) -> Task:
+    """The task of one run that learns from what ``expert`` showed, on the days on which it did."""
+    case = expert.case
+    return make_task(expert.planning_home, case.home, case.first_days(shown.days), shown.demonstrated, seed)
 
 
 def _basis(case: Case, shown: Demonstration) -> str:
