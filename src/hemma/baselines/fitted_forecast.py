@@ -1,14 +1,12 @@
 """A forecast fitted to the training period: ridge regression on yesterday and on what today differs by."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from jaxtyping import Float, Int
 
-from hemma.baselines.forecast import Outlook, last_known, profile, targets
-from hemma.baselines.selling import fit_selling
+from hemma.baselines.bent import assembled
+from hemma.baselines.forecast import Outlook, last_known, targets
 from hemma.errors import HemmaError
-from hemma.types import Array, Exogenous
+from hemma.types import Exogenous
 
 RIDGE = 0.01
 """Penalty on the squared weight of a feature of unit mean square, beside the mean square error."""
@@ -32,19 +30,7 @@ def fitted(outlook: Outlook) -> Exogenous:
             f"forecast: expected a past of at least {needed} slots to fit a forecast of {outlook.ahead}, got "
             f"{outlook.past.slots}; give longer training traces or a shorter horizon"
         )
-    joined = outlook.joined()
-    buying_price = _regression(outlook, joined.buying_price)
-    sun = _regression(outlook, joined.pv_generation)
-    return outlook.with_present(
-        Exogenous(
-            pv_generation=np.minimum(sun, _brightest(outlook, joined.pv_generation)),
-            load=_regression(outlook, joined.load),
-            outdoor_temperature=_regression(outlook, joined.outdoor_temperature),
-            buying_price=buying_price,
-            selling_price=np.asarray(fit_selling(outlook.past)(buying_price)),
-            hour_of_day=outlook.clock()[outlook.targets()],
-        )
-    )
+    return assembled(outlook, lambda series: _regression(outlook, series.z))
 
 
 def needed_past(outlook: Outlook) -> int:
@@ -61,17 +47,11 @@ def _hour(outlook: Outlook) -> int:
     return max(round(1.0 / outlook.slot_length), 1)
 
 
-def _regression(outlook: Outlook, values: Float[Array, "joined"]) -> Float[np.ndarray, "slots horizon"]:
-    values, times, asked = np.asarray(values), outlook.times(), outlook.targets()
-    past, day, hour = outlook.past.slots, outlook.day, _hour(outlook)
-    bend = _bend(values[:past])
-    level = profile(bend.bent(values[:past]), times[:past], day)
-    z = bend.bent(values) - level[times[: len(values)]]
-    learned = targets(_history(outlook), past - outlook.ahead + 1, outlook.ahead)
+def _regression(outlook: Outlook, z: Float[np.ndarray, "joined"]) -> Float[np.ndarray, "slots horizon"]:
+    asked, day, hour = outlook.targets(), outlook.day, _hour(outlook)
+    learned = targets(_history(outlook), outlook.past.slots - outlook.ahead + 1, outlook.ahead)
     weights = _ridge(_features(z, learned, day, hour), z[learned])
-    ahead = np.einsum("tkf,kf->tk", _features(z, asked, day, hour), weights) + level[times[asked]]
-    lowest, highest = np.minimum.accumulate(values), np.maximum.accumulate(values)
-    return np.clip(bend.unbent(ahead), lowest[past:, None], highest[past:, None])
+    return np.einsum("tkf,kf->tk", _features(z, asked, day, hour), weights)
 
 
 def _features(
@@ -94,33 +74,3 @@ def _ridge(
     size = np.where(size > 0, size, 1.0)
     scaled = moments / (size[:, :, None] * size[:, None, :]) + RIDGE * np.eye(features)
     return np.linalg.solve(scaled, (np.einsum("tki,tk->ki", x, y) / rows / size)[..., None])[..., 0] / size
-
-
-@dataclass(frozen=True)
-class _Bend:
-    """y -> asinh((y - centre) / width): a line around the middle, a logarithm in the tails."""
-
-    centre: float
-    width: float
-
-    def bent(self, values: np.ndarray) -> np.ndarray:
-        return np.arcsinh((values - self.centre) / self.width)
-
-    def unbent(self, values: np.ndarray) -> np.ndarray:
-        return self.centre + self.width * np.sinh(values)
-
-
-def _bend(values: Float[np.ndarray, "past"]) -> _Bend:
-    """Median and half the range from 10 to 90 %; where that is none, the largest distance from the median."""
-    low, centre, high = np.quantile(values, (0.1, 0.5, 0.9))
-    furthest = float(np.max(np.abs(values - centre)))
-    width = float(high - low) / 2
-    return _Bend(float(centre), width if width > 1e-6 * furthest else furthest or 1.0)
-
-
-def _brightest(outlook: Outlook, sun: Float[Array, "joined"]) -> Float[np.ndarray, "slots horizon"]:
-    """Largest PV generation that the past or the last known day saw at the time of day of each target."""
-    sun, times, asked = np.asarray(sun), outlook.times(), outlook.targets()
-    most = np.zeros(outlook.day)
-    np.maximum.at(most, times[: outlook.past.slots], sun[: outlook.past.slots])
-    return np.maximum(most[times[asked]], sun[last_known(asked, outlook.day)])
