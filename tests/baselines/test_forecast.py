@@ -9,14 +9,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_worlds import changed_after, cut, noisy, periodic
 
+from hemma.baselines.combined import MeanForecast, RefittedForecast
 from hemma.baselines.fitted_forecast import fitted
 from hemma.baselines.forecast import Outlook, hourly_means, perfect, yesterday
+from hemma.baselines.published import PublishedPrices
 from hemma.baselines.selling import fit_selling
+from hemma.baselines.shape_forecast import ShapeForecast
 from hemma.errors import HemmaError
 from hemma.types import Exogenous
 
-FORECASTERS = (perfect, yesterday, hourly_means, fitted)
-BLIND = (yesterday, hourly_means, fitted)
+SHAPE = ShapeForecast()
+BOTH = RefittedForecast(MeanForecast((SHAPE, fitted)), days=1)
+FORECASTERS = (perfect, yesterday, hourly_means, fitted, SHAPE, BOTH, PublishedPrices(SHAPE))
+BLIND = (yesterday, hourly_means, fitted, SHAPE, BOTH)
 QUANTITIES = ("pv_generation", "load", "outdoor_temperature", "buying_price", "selling_price", "hour_of_day")
 
 
@@ -87,9 +92,9 @@ def test_hourly_means_are_those_of_the_training_period_by_time_of_day():
 @given(seed=st.integers(0, 100), slot=st.integers(0, 46))
 @pytest.mark.parametrize("forecaster", BLIND)
 def test_what_happens_later_changes_no_earlier_forecast(forecaster, seed, slot):
-    exogenous = noisy(7, seed, negative_share=0.1)
-    as_it_was = forecaster(outlook(exogenous, 5))
-    otherwise = forecaster(outlook(changed_after(exogenous, 5 * 24 + slot), 5))
+    exogenous = noisy(8, seed, negative_share=0.1)
+    as_it_was = forecaster(outlook(exogenous, 6))
+    otherwise = forecaster(outlook(changed_after(exogenous, 6 * 24 + slot), 6))
     before = jax.tree.map(lambda x: x[: slot + 1], as_it_was)
     jax.tree.map(np.testing.assert_array_equal, before, jax.tree.map(lambda x: x[: slot + 1], otherwise))
     assert not np.array_equal(as_it_was.load[slot + 1 :], otherwise.load[slot + 1 :])
@@ -97,12 +102,13 @@ def test_what_happens_later_changes_no_earlier_forecast(forecaster, seed, slot):
 
 @settings(max_examples=8)
 @given(seed=st.integers(0, 100), negative=st.sampled_from([0.0, 0.2]), scale=st.sampled_from([1.0, 100.0]))
-def test_the_fitted_forecast_stays_within_what_can_be(seed, negative, scale):
+@pytest.mark.parametrize("forecaster", [fitted, BOTH])
+def test_a_fitted_forecast_stays_within_what_can_be(forecaster, seed, negative, scale):
     exogenous = noisy(9, seed, negative_share=negative)
     u = exogenous.buying_price
     exogenous = replace(exogenous, buying_price=scale * u, selling_price=scale * (0.8 * u - 0.01))
     world = outlook(exogenous, 7)
-    ahead = fitted(world)
+    ahead = forecaster(world)
     assert np.all(ahead.load >= 0)
     assert np.all(ahead.pv_generation >= 0)
     night = (ahead.hour_of_day < 6) | (ahead.hour_of_day > 18)
@@ -113,20 +119,21 @@ def test_the_fitted_forecast_stays_within_what_can_be(seed, negative, scale):
     np.testing.assert_allclose(ahead.selling_price, line, rtol=1e-9, atol=1e-12 * scale)
 
 
-def test_the_currency_does_not_matter_to_the_fit():
+@pytest.mark.parametrize("forecaster", [fitted, SHAPE])
+def test_the_currency_does_not_matter_to_the_fit(forecaster):
     exogenous = noisy(9, 5)
     u, v = exogenous.buying_price, exogenous.selling_price
     world, dear = (
         outlook(replace(exogenous, buying_price=rate * u, selling_price=rate * v), 7) for rate in (1, 10)
     )
-    np.testing.assert_allclose(fitted(dear).buying_price, 10 * fitted(world).buying_price, rtol=1e-9)
+    np.testing.assert_allclose(forecaster(dear).buying_price, 10 * forecaster(world).buying_price, rtol=1e-9)
 
 
 def test_one_spike_in_the_training_moves_other_days_little():
     exogenous = periodic(20)
     price = np.where(np.arange(exogenous.slots) == 110, 5.0, exogenous.buying_price)
     spiked = replace(exogenous, buying_price=price)
-    for forecaster, most in ((hourly_means, 0.4), (fitted, 0.05)):
+    for forecaster, most in ((hourly_means, 0.4), (fitted, 0.05), (SHAPE, 0.05)):
         world = outlook(spiked, 18)
         error = np.nanmax(np.abs(forecaster(world).buying_price - truth(world, "buying_price")))
         assert error < most
@@ -137,7 +144,7 @@ def test_a_home_without_sun_and_with_one_price_is_forecast_too():
     exogenous = periodic(8, price=0.2)
     nothing = np.zeros(exogenous.slots)
     dark = replace(exogenous, pv_generation=nothing, selling_price=nothing + 0.05)
-    ahead = fitted(outlook(dark, 6))
+    ahead = BOTH(outlook(dark, 6))
     assert np.all(ahead.pv_generation == 0)
     np.testing.assert_allclose(ahead.buying_price, 0.2)
     np.testing.assert_allclose(ahead.selling_price, 0.05)
@@ -162,3 +169,78 @@ def test_bad_outlooks_are_refused():
         Outlook(exogenous.window(0, 20), period, 1.0)
     with pytest.raises(HemmaError, match="longer training traces"):
         fitted(Outlook(past, period, 1.0))
+    with pytest.raises(HemmaError, match="longer training traces"):
+        SHAPE(Outlook(past, period, 1.0))
+    for settings_without_meaning in ({"history": 0.0}, {"closeness": -1.0}, {"ridge": 0.0}):
+        with pytest.raises(HemmaError, match="> 0"):
+            ShapeForecast(**settings_without_meaning)
+    with pytest.raises(HemmaError, match="days >= 1"):
+        RefittedForecast(SHAPE, days=0)
+    with pytest.raises(HemmaError, match="an hour of the day"):
+        PublishedPrices(SHAPE, 25.0)
+
+
+def test_the_shape_forecast_is_the_weighted_ridge_regression_written_out():
+    world = outlook(noisy(12, 8), 9, horizon=6.0)
+    shape = ShapeForecast(history=5.0, closeness=2.0, ridge=0.1)
+    u, past = np.concatenate([world.past.load, world.period.load]), world.past.slots
+    low, median, high = np.quantile(u[:past], (0.1, 0.5, 0.9))
+    bent = np.arcsinh((u - median) / ((high - low) / 2))
+    usual = np.array([np.mean(bent[:past][np.arange(past) % 24 == hour]) for hour in range(24)])
+    z = bent - usual[np.arange(len(u)) % 24]
+    t, k = past + 31, 4
+    rows, weights = [], []
+    for s in range(5, past - 5):
+        apart = abs((s - t + 12) % 24 - 12)
+        weights.append(np.exp(-0.5 * (apart / 2.0) ** 2))
+        rows.append([*(z[s - back] for back in range(5)), z[s + k]])
+    rows, weights = np.array(rows), np.array(weights) / np.sum(weights)
+    x, y = rows[:, :5], rows[:, 5]
+    penalty = 0.1 * np.mean(x**2, axis=0)
+    centred = x - weights @ x
+    moments = np.einsum("s,si,sj->ij", weights, centred, centred) + np.diag(penalty)
+    w = np.linalg.solve(moments, np.einsum("s,si,s->i", weights, centred, y - weights @ y))
+    expected = weights @ y + w @ (np.array([z[t - back] for back in range(5)]) - weights @ x)
+    load = median + (high - low) / 2 * np.sinh(expected + usual[(t + k) % 24])
+    assert shape(world).load[31, k] == pytest.approx(np.clip(load, u[: t + 1].min(), u[: t + 1].max()))
+
+
+def test_a_day_whose_evening_follows_its_morning_is_forecast_by_its_shape():
+    exogenous, random = periodic(40), np.random.default_rng(3)
+    day = np.arange(exogenous.slots) // 24
+    dear = random.integers(0, 2, 40)[day] * np.isin(np.arange(exogenous.slots) % 24, (7, 18))
+    world = outlook(replace(exogenous, buying_price=exogenous.buying_price + 0.1 * dear), 34)
+    noon = np.arange(12, world.period.slots, 24)[:-1]
+    true = np.array([world.period.buying_price[t + 6] for t in noon])
+    error = [np.max(np.abs(f(world).buying_price[noon, 6] - true)) for f in (SHAPE, fitted)]
+    assert error[0] < 0.02
+    assert error[1] > 0.05
+
+
+def test_the_mean_forecast_is_the_mean_of_its_parts():
+    world = outlook(noisy(9, 9), 7)
+    mean = MeanForecast((yesterday, hourly_means))(world)
+    expected = (yesterday(world).load + hourly_means(world).load) / 2
+    np.testing.assert_allclose(mean.load[:, 1:], expected[:, 1:])
+
+
+def test_a_refitted_forecast_takes_each_day_from_the_fit_of_that_morning():
+    exogenous = noisy(11, 10)
+    again = RefittedForecast(hourly_means, days=2)(outlook(exogenous, 6))
+    third_day = hourly_means(outlook(exogenous, 8))
+    np.testing.assert_array_equal(again.load[48:96], third_day.load[:48])
+    assert not np.array_equal(again.load[48:96], hourly_means(outlook(exogenous, 6)).load[48:96])
+
+
+@pytest.mark.parametrize("slot_length", [1.0, 0.25])
+def test_published_prices_are_true_until_midnight_and_from_their_hour_on_until_the_next(slot_length):
+    world = outlook(noisy(9, 11, slot_length), 7, slot_length)
+    ahead, true = PublishedPrices(yesterday, 14.0)(world).buying_price, truth(world, "buying_price")
+    otherwise = yesterday(world).buying_price
+    for hour, known in ((0.0, 24.0), (13.75, 10.25), (14.0, 34.0), (23.0, 25.0)):
+        t, last = round(hour / slot_length), round(known / slot_length)
+        if t * slot_length != hour:
+            continue
+        stop = min(last, world.ahead)
+        np.testing.assert_array_equal(ahead[t, :stop], true[t, :stop])
+        np.testing.assert_array_equal(ahead[t, last:], otherwise[t, last:])

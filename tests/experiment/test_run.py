@@ -35,6 +35,8 @@ NOT_LEARNED = {
     "no battery",
     "thresholds",
     "MPC perfect",
+    "default",
+    "default published",
     "MPC forecast",
     "MPC hourly means",
     "MPC yesterday",

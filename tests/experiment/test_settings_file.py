@@ -71,7 +71,7 @@ def test_units_stand_in_the_names_and_only_what_is_given_changes(tmp_path):
         ("comfort: {high_c: .nan}", r"comfort\.high_c: .*finite"),
         ("comfort: {high_c: warm}", r"comfort\.high_c: .*valid number.*got 'warm'"),
         ("seeds: yes", r"seeds: a number is expected, not yes"),
-        ("ppo: {rollouts: 8}", r"agent_rollouts of at most ppo's rollouts, 8, got 16"),
+        ("airl: {rollouts: 4}", r"agent_rollouts of at most rollouts, 4, got 8"),
         ("seeds: 0", r"seeds: expected at least 1, got 0"),
         ("seeds: 2.5", r"seeds: .*integer"),
         ("battery: 3", r"battery: .*got 3"),

@@ -110,7 +110,7 @@ class HomeRun:
         paid = self._paid(expert)
         for _, learned in paid:
             results = self._learned(results, judge, learned, train_lesson(learned.lesson, self.store))
-        results = self._put(replace(results, regret=split_regrets(judge, results.methods)))
+        results = self._put(replace(results, regret=split_regrets(judge, expert, results.methods)))
         pareto = Pareto(judge)
         runs = [run.metrics.total_temperature_deviation for method in methods for run in method.runs]
         points = pareto.frontier(max(runs))

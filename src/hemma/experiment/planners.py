@@ -6,14 +6,16 @@ from dataclasses import dataclass
 import jax
 
 from hemma.baselines.fitted_forecast import fitted, needed_past
-from hemma.baselines.forecast import Forecaster, Outlook, hourly_means, perfect, yesterday
+from hemma.baselines.forecast import Forecaster, hourly_means, perfect, yesterday
+from hemma.baselines.published import PublishedPrices
 from hemma.baselines.rolling import rolling_mpc
 from hemma.evaluation import evaluate
-from hemma.experiment.case import Case
+from hemma.experiment.default import choose_forecast, outlook_of
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import fingerprint
 from hemma.experiment.judge import Judge, Played
 from hemma.experiment.results import Run
+from hemma.experiment.store import Store
 from hemma.home import Home, Schedule
 
 STAGE = "MPC"
@@ -25,35 +27,41 @@ class Planner:
 
     method: str
     forecaster: Forecaster
-    is_causal: bool
-    """Whether it knows the past alone."""
+    is_causal: bool = True
+    """Whether it knows no more than what has happened or been published."""
+    facts: tuple = ()
+    """What the forecast depends on besides the traces and the horizon."""
+    seconds_to_fit: float | None = None
+    """How long its forecast took to choose, where there was a choice."""
 
 
-ALL = (
-    Planner("MPC perfect", perfect, is_causal=False),
-    Planner("MPC forecast", fitted, is_causal=True),
-    Planner("MPC hourly means", hourly_means, is_causal=True),
-    Planner("MPC yesterday", yesterday, is_causal=True),
-)
-
-
-def planners(case: Case) -> tuple[Planner, ...]:
+def planners(expert: Expert, store: Store) -> tuple[Planner, ...]:
     """Those that the training period is long enough for; the first causal one has the best forecast."""
-    outlook = _outlook(case)
+    choice, outlook = choose_forecast(expert, store), outlook_of(expert.case)
+    settings = expert.case.experiment.default
+    chosen, facts, seconds = choice.candidate.forecaster, (choice.candidate.name, settings), choice.seconds
+    published = PublishedPrices(chosen, settings.published_at)
     enough = outlook.past.slots >= needed_past(outlook)
-    return tuple(planner for planner in ALL if enough or planner.forecaster is not fitted)
+    return (
+        Planner("MPC perfect", perfect, is_causal=False),
+        Planner("default", chosen, facts=facts, seconds_to_fit=seconds),
+        *([Planner("MPC forecast", fitted)] if enough else []),
+        Planner("MPC hourly means", hourly_means),
+        Planner("MPC yesterday", yesterday),
+        Planner("default published", published, facts=facts, seconds_to_fit=seconds),
+    )
 
 
 def played_by(planner: Planner, judge: Judge, expert: Expert) -> tuple[Run, ...]:
     """Its run on the test period, planning through the identified network."""
-    mark = fingerprint(STAGE, expert.mark, judge.case.experiment.forecast_horizon)
+    mark = fingerprint(STAGE, expert.mark, judge.case.experiment.forecast_horizon, planner.facts)
     return _judged(planner, judge, mark, expert.planning_home, planner.method)
 
 
 def played_with_true_model(planner: Planner, judge: Judge) -> tuple[Run, ...]:
     """The same, planning through the thermal model of the simulated home: nobody could, it splits regret."""
     case = judge.case
-    mark = fingerprint(STAGE, case.mark, case.experiment.forecast_horizon)
+    mark = fingerprint(STAGE, case.mark, case.experiment.forecast_horizon, planner.facts)
     return _judged(planner, judge, mark, case.home, f"{planner.method} with the true model")
 
 
@@ -62,14 +70,9 @@ def _judged(planner: Planner, judge: Judge, mark: str, planning_home: Home, labe
 
     def play() -> Sequence[Played]:
         progress.started(label, 1)
-        path = rolling_mpc(planning_home, case.home, case.test, planner.forecaster(_outlook(case)))
+        path = rolling_mpc(planning_home, case.home, case.test, planner.forecaster(outlook_of(case)))
         progress.finished(label, f"{case.test.slots} plans")
         outcome = evaluate(case.home, case.test, Schedule(path.steps.action), jax.random.key(0))
-        return [Played(outcome)]
+        return [Played(outcome, seconds_to_train=planner.seconds_to_fit)]
 
     return judge.judged(label, mark, play)
-
-
-def _outlook(case: Case) -> Outlook:
-    slot_length, horizon = float(case.home.slot_length), case.experiment.forecast_horizon
-    return Outlook(case.training, case.test, slot_length, horizon)

@@ -50,7 +50,7 @@ class References:
         """Every rolling planner, through the identified network."""
         return tuple(
             MethodResults(planner.method, played_by(planner, self.judge, self.expert))
-            for planner in planners(self._case)
+            for planner in planners(self.expert, self.judge.store)
         )
 
     def _hindsight(self) -> tuple[MethodResults, ...]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hemma.evaluation.regret import split_regret
+from hemma.experiment.demonstrate import Expert
 from hemma.experiment.judge import Judge
 from hemma.experiment.planners import planners, played_with_true_model
 from hemma.experiment.results import MethodRegret, MethodResults, Run
@@ -13,13 +14,13 @@ HINDSIGHT = ("MPC perfect", "optimum", "DNLP", "HMPC", "HMPC joint")
 """They know the future: no part of their regret comes from not knowing it."""
 
 
-def split_regrets(judge: Judge, methods: Sequence[MethodResults]) -> tuple[MethodRegret, ...]:
+def split_regrets(judge: Judge, expert: Expert, methods: Sequence[MethodResults]) -> tuple[MethodRegret, ...]:
     """The split of every causal method, of the means over its runs.
 
     A planner is compared with itself on the true building, every other method with the planner that has the
     best causal forecast.
     """
-    causal = [planner for planner in planners(judge.case) if planner.is_causal]
+    causal = [planner for planner in planners(expert, judge.store) if planner.is_causal]
     regrets = {method.method: _mean(method.runs) for method in methods}
     truths = {one.method: _mean(played_with_true_model(one, judge)) for one in causal}
     rows = []

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 
+from hemma.baselines.shape_forecast import ShapeForecast
 from hemma.data import Tariff
 from hemma.expert.hierarchy import HierarchySettings
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Home, Hvac
@@ -76,6 +77,32 @@ class ParetoSettings:
 
 
 @dataclass(frozen=True)
+class DefaultController:
+    """How the default controller's forecast is made and chosen."""
+
+    shape: ShapeForecast = field(default_factory=ShapeForecast)
+    """The forecast that learns the shape of the day."""
+    refitted: int = 7
+    """Days after which the forecasts are fitted again, to all that has happened until then."""
+    margin: float = 0.2
+    """How much less regret, as a share, makes up for a later place in the order of preference."""
+    judged: float = 0.5
+    """Share of the training period, its end, on which the forecasts are judged."""
+    folds: int = 2
+    """Parts that are judged one by one, each planned by forecasts fitted to the days before it."""
+    published_at: float = 14.0
+    """Hour of the day at which tomorrow's prices are published; only `default published` knows them."""
+
+    def __post_init__(self):
+        """Refuse values that cannot be."""
+        require("default", self.refitted >= 1, "refitted >= 1", self.refitted)
+        require("default", 0 <= self.margin < 1, "0 <= margin < 1", self.margin)
+        require("default", 0 < self.judged < 1, "0 < judged < 1", self.judged)
+        require("default", self.folds >= 1, "folds >= 1", self.folds)
+        require("default", 0 <= self.published_at <= 24, "published_at from 0 to 24", self.published_at)
+
+
+@dataclass(frozen=True)
 class Experiment:
     """The paper's experiment; every default that the paper does not print is explained in docs/paper.md."""
 
@@ -99,7 +126,7 @@ class Experiment:
     expert: HierarchySettings = field(default_factory=HierarchySettings)
     airl: AIRLSettings = field(default_factory=AIRLSettings)
     ppo: PPOSettings = field(default_factory=PPOSettings)
-    """Of every policy that imitates and is improved by PPO."""
+    """Of every policy that imitates and is improved by PPO; AIRL and GAIL set the number of rollouts."""
     explicit: ExplicitSettings = field(default_factory=ExplicitSettings)
     """Of PPO on the explicit reward, which has a PPO of its own."""
     ddpg: DDPGSettings = field(default_factory=DDPGSettings)
@@ -107,6 +134,7 @@ class Experiment:
     cloning: CloningSettings = field(default_factory=CloningSettings)
     comfort_price: ComfortPrices = field(default_factory=ComfortPrices)
     pareto: ParetoSettings = field(default_factory=ParetoSettings)
+    default: DefaultController = field(default_factory=DefaultController)
     forecast_horizon: float = 36.0
     """How far ahead the rolling planners (MPC) look [h]."""
     learned: tuple[str, ...] = LEARNED
@@ -126,8 +154,6 @@ class Experiment:
             require(name, getattr(self, name) >= 1, "at least 1", getattr(self, name))
         unknown = [method for method in self.learned if method not in LEARNED]
         require("learned", not unknown, f"some of {', '.join(LEARNED)}", ", ".join(unknown))
-        most = f"agent_rollouts of at most ppo's rollouts, {self.ppo.rollouts}"
-        require("airl", self.airl.agent_rollouts <= self.ppo.rollouts, most, self.airl.agent_rollouts)
         require("forecast_horizon", self.forecast_horizon > 0, "hours > 0", self.forecast_horizon)
         require("pv", self.pv_scale >= 0, "scale >= 0", self.pv_scale)
 

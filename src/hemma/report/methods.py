@@ -41,8 +41,9 @@ GROUPS = (
         ("HA-1", "HA-2", "AIRL", "GAIL", "MaxEnt IRL", "MaxEnt IRL neural", "BC"),
     ),
     Group("Learned from a hand-written reward", ("PPO", "DDPG")),
-    Group("Plans again in every slot", ("MPC forecast", "MPC hourly means", "MPC yesterday")),
+    Group("Plans again in every slot", ("default", "MPC forecast", "MPC hourly means", "MPC yesterday")),
     Group("Fixed rules", ("thresholds", "Rule", "no battery")),
+    Group("Knows tomorrow's prices", ("default published",)),
     Group("Knows the future", ("MPC perfect", "HMPC", "HMPC joint", "DNLP", "optimum")),
 )
 OTHERS = "Others"
@@ -58,6 +59,7 @@ _LOOKS = {
     "PPO": Look(ORANGE, MIXED, "D"),
     "DDPG": Look(ORANGE, DOTTED, "v"),
     "default": Look(SKY, "-", "P"),
+    "default published": Look(SKY, DOTTED, "X"),
     "MPC forecast": Look(GREY, "-", "o"),
     "MPC hourly means": Look(GREY, DASHED, "s"),
     "MPC yesterday": Look(GREY, DOTTED, "^"),
@@ -85,10 +87,14 @@ MEANINGS = {
     "BC": "behavioural cloning: a regression from states to the demonstrated actions, without any trial",
     "PPO": "reinforcement learning on the hand-written reward −(X1 + X2) − β·X3, on policy",
     "DDPG": "reinforcement learning on the same hand-written reward, off policy",
-    "default": "the controller that Hemma uses unless told otherwise",
-    "MPC forecast": "plans battery and HVAC of the next hours together in every slot, does the first slot "
-    "of the plan, measures, and plans again; prices, weather and load ahead come from a forecast fitted on "
-    "the training period, the building is the identified network",
+    "default": "the controller that Hemma uses unless told otherwise: plans battery and HVAC of the next "
+    "hours together in every slot, does the first slot of the plan, measures, and plans again; the building "
+    "is the identified network, and of several forecasts fitted to the past it takes the one that cost least "
+    "to plan with on training days that the forecast had not seen",
+    "default published": "the same controller where prices are published ahead: it knows today's, and from "
+    "the afternoon on tomorrow's",
+    "MPC forecast": "the same planner with the simplest fitted forecast: yesterday, corrected by how today "
+    "differs from it",
     "MPC hourly means": "the same planner, expecting the training period's mean at each time of day",
     "MPC yesterday": "the same planner, expecting the last known value at the same time of day",
     "thresholds": "charges below one price and discharges above another, both fitted on the training "

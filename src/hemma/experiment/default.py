@@ -1,0 +1,139 @@
+"""Stage: Hemma's default controller, the rolling planner with the forecast that the training days favour."""
+
+import time
+from dataclasses import dataclass
+from itertools import pairwise
+
+import jax
+import numpy as np
+
+from hemma.baselines.combined import MeanForecast, RefittedForecast
+from hemma.baselines.fitted_forecast import fitted, needed_past
+from hemma.baselines.forecast import Forecaster, Outlook, hourly_means, yesterday
+from hemma.baselines.optimum import OptimumProblem, optimum_problem
+from hemma.baselines.rolling import rolling_mpc
+from hemma.evaluation import evaluate
+from hemma.experiment.case import Case
+from hemma.experiment.demonstrate import Expert
+from hemma.experiment.fingerprint import code, fingerprint
+from hemma.experiment.settings import Experiment
+from hemma.experiment.store import Store
+from hemma.home import Schedule
+
+STAGE = "default"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A forecast that the default controller may plan with."""
+
+    name: str
+    forecaster: Forecaster
+    needed: int
+    """The shortest past that it can be fitted to [slots]."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The forecast that planned best on training days that it had not seen."""
+
+    candidate: Candidate
+    regrets: dict[str, float]
+    """Of each candidate over all judged days [currency]; empty where there was nothing to judge on."""
+    seconds: float
+    """How long the choice took."""
+
+
+def candidates(experiment: Experiment, outlook: Outlook) -> tuple[Candidate, ...]:
+    """In the order of preference; all but the last two are fitted again every so many days."""
+    settings = experiment.default
+    shape, places = settings.shape.needed_past(outlook), needed_past(outlook)
+
+    def refitted(forecaster: Forecaster) -> RefittedForecast:
+        return RefittedForecast(forecaster, settings.refitted)
+
+    return (
+        Candidate("mean of both", refitted(MeanForecast((settings.shape, fitted))), max(shape, places)),
+        Candidate("shape of the day", refitted(settings.shape), shape),
+        Candidate("five places", refitted(fitted), places),
+        Candidate("yesterday", yesterday, outlook.day),
+        Candidate("hourly means", hourly_means, outlook.day),
+    )
+
+
+def outlook_of(case: Case) -> Outlook:
+    """The test period, and the training period before it."""
+    return Outlook(case.training, case.test, float(case.home.slot_length), case.experiment.forecast_horizon)
+
+
+def choose_forecast(expert: Expert, store: Store) -> Choice:
+    """Plan the judged training days with every candidate; the regret decides.
+
+    The last part of the training period is cut into folds; each is planned by forecasts fitted to the days
+    before it. What counts is not how near a forecast comes but what it costs to plan with: the regret, the
+    cost beyond perfect information at equal comfort. A candidate is passed over only for one with clearly
+    less (``margin``), because a month says little about small differences. A training period too short for
+    any fold gets the first candidate that can be fitted to it.
+    """
+    case = expert.case
+    offered = [c for c in candidates(case.experiment, outlook_of(case)) if c.needed <= case.training.slots]
+    mark = fingerprint(STAGE, code("baselines", "expert", "evaluation"), expert.mark, case.experiment.default)
+    mark = fingerprint(STAGE, mark, case.experiment.forecast_horizon)
+    content = store.kept(STAGE, mark)
+    if content is None:
+        content = _judged(expert, store, offered)
+        store.keep(STAGE, mark, [], content)
+    else:
+        store.progress.reused(STAGE, content["message"])
+    chosen = next(c for c in offered if c.name == content["chosen"])
+    return Choice(chosen, content["regrets"], content["seconds"])
+
+
+def _judged(expert: Expert, store: Store, offered: list[Candidate]) -> dict:
+    """The content of the card: what was chosen, and the regrets [currency]."""
+    begun, folds = time.monotonic(), _folds(expert.case)
+    store.progress.started(STAGE, max(len(folds) * len(offered), 1))
+    regrets = {c.name: 0.0 for c in offered if folds and c.needed <= folds[0].past.slots}
+    done = 0
+    for fold in folds:
+        problem = optimum_problem(expert.case.home, fold.period)
+        for candidate in offered:
+            if candidate.name in regrets:
+                regrets[candidate.name] += _regret(expert, fold, candidate.forecaster, problem)
+            done += 1
+            store.progress.advanced(STAGE, done, candidate.name)
+    chosen = _preferred(regrets, expert.case.experiment.default.margin) if regrets else offered[0].name
+    message = f"plans with the forecast called {chosen}"
+    store.progress.finished(STAGE, message)
+    seconds = time.monotonic() - begun
+    return {"chosen": chosen, "regrets": regrets, "seconds": seconds, "message": message}
+
+
+def _preferred(regrets: dict[str, float], margin: float) -> str:
+    """The first that no other undercuts by more than ``margin`` of its regret."""
+    least = min(regrets.values())
+    return next(name for name, regret in regrets.items() if regret - least <= margin * abs(regret))
+
+
+def _folds(case: Case) -> list[Outlook]:
+    """Parts of the training period with the days before them, whole days each; none if it is too short."""
+    settings, horizon = case.experiment.default, case.experiment.forecast_horizon
+    day = round(24 / float(case.home.slot_length))
+    first = case.training_days - int(case.training_days * settings.judged)
+    days = np.linspace(first, case.training_days, settings.folds + 1).astype(int)
+    if first < 1 or np.any(np.diff(days) < 1):
+        return []
+    training, slot_length = case.training, float(case.home.slot_length)
+    return [
+        Outlook(
+            training.window(0, start * day), training.window(start * day, stop * day), slot_length, horizon
+        )
+        for start, stop in pairwise(days.tolist())
+    ]
+
+
+def _regret(expert: Expert, fold: Outlook, forecaster: Forecaster, problem: OptimumProblem) -> float:
+    home = expert.case.home
+    path = rolling_mpc(expert.planning_home, home, fold.period, forecaster(fold))
+    outcome = evaluate(home, fold.period, Schedule(path.steps.action), jax.random.key(0))
+    return float(np.sum(outcome.cost)) - problem.solve(outcome.total_deviation).cost
