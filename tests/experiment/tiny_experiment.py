@@ -19,6 +19,8 @@ def tiny_experiment(iterations=50):
         hidden=(4,),
         batch=16,
         steps=1,
+        members=2,
+        rollouts=4,
         agent_rollouts=2,
         replayed=2,
     )

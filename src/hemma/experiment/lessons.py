@@ -1,7 +1,7 @@
 """What there is to learn from the expert on one home: which methods, from how many days, how many runs."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 
 import jax
@@ -15,8 +15,9 @@ from hemma.experiment.train import Lesson
 from hemma.irl.airl import AdversarialImitation
 from hemma.irl.cloning import BehaviourCloning
 from hemma.irl.maxent import linear_maxent, neural_maxent
-from hemma.irl.reward import ImitationScore
+from hemma.irl.reward import AbstractHead, ImitationScore, ShapedReward
 from hemma.rl import task
+from hemma.rl.committee import Committee
 from hemma.rl.improvement import Proximal
 from hemma.rl.task import Task, make_task
 from hemma.rl.training import Algorithm
@@ -38,9 +39,11 @@ class Imitation:
     """Of its files, and of the stage."""
 
 
-def airl(experiment: Experiment) -> AdversarialImitation:
-    """The method of HA-1 and HA-2."""
-    return AdversarialImitation(experiment.airl, Proximal(experiment.ppo))
+def airl(experiment: Experiment, head: type[AbstractHead] = ShapedReward) -> Committee:
+    """The method of HA-1 and HA-2, or with another head GAIL."""
+    settings = experiment.airl
+    by_ppo = Proximal(replace(experiment.ppo, rollouts=settings.rollouts))
+    return Committee(AdversarialImitation(settings, by_ppo, head), settings.members)
 
 
 def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, ...]:
@@ -54,7 +57,7 @@ def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, .
     known = (
         ("HA-1", ours, short),
         ("HA-2", ours, long),
-        ("GAIL", AdversarialImitation(experiment.airl, by_ppo, ImitationScore), short),
+        ("GAIL", airl(experiment, ImitationScore), short),
         ("MaxEnt IRL", linear_maxent(experiment.maxent, by_ppo), long),
         ("MaxEnt IRL neural", neural_maxent(experiment.maxent, by_ppo), long),
         ("BC", BehaviourCloning(experiment.cloning), short),

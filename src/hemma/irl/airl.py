@@ -28,8 +28,12 @@ class AIRLSettings:
 
     iterations: int = 500
     """N, a multiple of 25."""
-    agent_rollouts: int = 16
-    """How many of an iteration's rollouts the discriminator sees."""
+    members: int = 3
+    """Agents that learn by themselves, each with its own reward; the mean of their actions is the result."""
+    rollouts: int = 32
+    """Rollouts of an agent in an iteration, in the place of the number that PPO's settings have."""
+    agent_rollouts: int = 8
+    """How many of them the discriminator sees."""
     replayed: int = 8
     """Iterations whose agent transitions the discriminator still sees."""
     steps: int = 4
@@ -53,8 +57,10 @@ class AIRLSettings:
         """Refuse settings without meaning."""
         whole = self.iterations >= CHUNK and self.iterations % CHUNK == 0
         require("airl", whole, f"iterations a multiple of {CHUNK}", self.iterations)
-        for name in ("agent_rollouts", "replayed", "steps", "batch"):
+        for name in ("members", "agent_rollouts", "replayed", "steps", "batch"):
             require("airl", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
+        most = f"agent_rollouts of at most rollouts, {self.rollouts}"
+        require("airl", self.agent_rollouts <= self.rollouts, most, self.agent_rollouts)
         for name in ("learning_rate", "log_density_bound"):
             require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
         require("airl", self.penalty >= 0, "penalty >= 0", self.penalty)
