@@ -89,10 +89,34 @@ def show_results(folder: Path, content: Any) -> None:
         for name, home in homes.items():
             errors = home["identification"]["rmse_c"].items()
             typer.echo(f"{name}: free-run error " + ", ".join(f"{h}: {e:.2g} °C" for h, e in errors))
+    print_recommendations(content)
     report = folder / "report.html"
     typer.echo(f"Results: {folder / 'results.json'}")
     if report.is_file():
         typer.echo(f"Report: {report}")
+
+
+def print_recommendations(content: Any) -> None:
+    """Which controller each home should have, where that was judged."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from hemma.report.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
+    from hemma.report.results import HomeResults
+
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    for name, entry in content["homes"].items():
+        home = HomeResults.model_validate(entry)
+        if home.recommendation is None:
+            continue
+        first, *others = HEADINGS
+        table = Table(first, title=f"{name}: judged on training days alone")
+        for heading in others:
+            table.add_column(heading, justify="right")
+        for cells in recommendation_rows(home):
+            table.add_row(*cells)
+        console.print(table)
+        typer.echo(recommendation_sentence(name, home))
 
 
 def print_table(folder: Path) -> None:

@@ -2,23 +2,18 @@
 
 import time
 from dataclasses import dataclass
-from itertools import pairwise
 
-import jax
 import numpy as np
 
 from hemma.baselines.combined import MeanForecast, RefittedForecast
 from hemma.baselines.fitted_forecast import fitted, needed_past
 from hemma.baselines.forecast import Forecaster, Outlook, hourly_means, yesterday
 from hemma.baselines.optimum import OptimumProblem, optimum_problem
-from hemma.baselines.rolling import rolling_mpc
-from hemma.evaluation import evaluate
-from hemma.experiment.case import Case
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import code, fingerprint
+from hemma.experiment.folds import outlook_of, planned, training_folds
 from hemma.experiment.settings import Experiment
 from hemma.experiment.store import Store
-from hemma.home import Schedule
 
 STAGE = "default"
 
@@ -61,11 +56,6 @@ def candidates(experiment: Experiment, outlook: Outlook) -> tuple[Candidate, ...
     )
 
 
-def outlook_of(case: Case) -> Outlook:
-    """The test period, and the training period before it."""
-    return Outlook(case.training, case.test, float(case.home.slot_length), case.experiment.forecast_horizon)
-
-
 def choose_forecast(expert: Expert, store: Store) -> Choice:
     """Plan the judged training days with every candidate; the regret decides.
 
@@ -91,7 +81,7 @@ def choose_forecast(expert: Expert, store: Store) -> Choice:
 
 def _judged(expert: Expert, store: Store, offered: list[Candidate]) -> dict:
     """The content of the card: what was chosen, and the regrets [currency]."""
-    begun, folds = time.monotonic(), _folds(expert.case)
+    begun, folds = time.monotonic(), training_folds(expert.case)
     store.progress.started(STAGE, max(len(folds) * len(offered), 1))
     regrets = {c.name: 0.0 for c in offered if folds and c.needed <= folds[0].past.slots}
     done = 0
@@ -102,38 +92,19 @@ def _judged(expert: Expert, store: Store, offered: list[Candidate]) -> dict:
                 regrets[candidate.name] += _regret(expert, fold, candidate.forecaster, problem)
             done += 1
             store.progress.advanced(STAGE, done, candidate.name)
-    chosen = _preferred(regrets, expert.case.experiment.default.margin) if regrets else offered[0].name
+    chosen = preferred(regrets, expert.case.experiment.default.margin) if regrets else offered[0].name
     message = f"plans with the forecast called {chosen}"
     store.progress.finished(STAGE, message)
     seconds = time.monotonic() - begun
     return {"chosen": chosen, "regrets": regrets, "seconds": seconds, "message": message}
 
 
-def _preferred(regrets: dict[str, float], margin: float) -> str:
+def preferred(regrets: dict[str, float], margin: float) -> str:
     """The first that no other undercuts by more than ``margin`` of its regret."""
     least = min(regrets.values())
     return next(name for name, regret in regrets.items() if regret - least <= margin * abs(regret))
 
 
-def _folds(case: Case) -> list[Outlook]:
-    """Parts of the training period with the days before them, whole days each; none if it is too short."""
-    settings, horizon = case.experiment.default, case.experiment.forecast_horizon
-    day = round(24 / float(case.home.slot_length))
-    first = case.training_days - int(case.training_days * settings.judged)
-    days = np.linspace(first, case.training_days, settings.folds + 1).astype(int)
-    if first < 1 or np.any(np.diff(days) < 1):
-        return []
-    training, slot_length = case.training, float(case.home.slot_length)
-    return [
-        Outlook(
-            training.window(0, start * day), training.window(start * day, stop * day), slot_length, horizon
-        )
-        for start, stop in pairwise(days.tolist())
-    ]
-
-
 def _regret(expert: Expert, fold: Outlook, forecaster: Forecaster, problem: OptimumProblem) -> float:
-    home = expert.case.home
-    path = rolling_mpc(expert.planning_home, home, fold.period, forecaster(fold))
-    outcome = evaluate(home, fold.period, Schedule(path.steps.action), jax.random.key(0))
+    outcome = planned(expert, fold, forecaster)
     return float(np.sum(outcome.cost)) - problem.solve(outcome.total_deviation).cost

@@ -69,6 +69,9 @@ def home_document(home: HomeResults) -> dict[str, Any]:
         content["identification"] = _identification_document(home.identification)
     if home.optimum is not None:
         content["optimum"] = _finite(asdict(home.optimum))
+    if home.recommendation is not None:
+        content["recommendation"] = asdict(home.recommendation)
+        content["recommendation"]["judged"] = [_finite(asdict(one)) for one in home.recommendation.judged]
     content["demonstration_days"] = {m.method: m.days for m in home.methods if m.days is not None}
     content["methods"] = {m.method: _method_document(m.runs) for m in home.methods}
     content["data_efficiency"] = [

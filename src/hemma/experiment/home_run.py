@@ -7,6 +7,7 @@ from functools import partial
 
 from hemma.experiment.bands import Bands, bands_lesson
 from hemma.experiment.case import Case, empty_results
+from hemma.experiment.default import choose_forecast
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.explicit import Sweep, explicit_lesson, explicit_methods, sweep_comfort_price
 from hemma.experiment.identify import identify
@@ -15,6 +16,7 @@ from hemma.experiment.ledger import Ledger
 from hemma.experiment.lessons import ANY_LENGTH, imitations, lessons
 from hemma.experiment.pareto import Pareto
 from hemma.experiment.play import play
+from hemma.experiment.recommend import Tryout
 from hemma.experiment.references import References, plain_optimum
 from hemma.experiment.regrets import split_regrets
 from hemma.experiment.results import HomeResults, MethodResults, Run
@@ -65,9 +67,10 @@ class HomeRun:
         if last is Stage.DEMONSTRATE:
             return
         if last is Stage.TRAIN:
-            self._train(imitating, bands)
+            trained = self._train(imitating, bands)
             for _, learned in self._paid(expert):
                 train_lesson(learned.lesson, self.store)
+            self._recommended(results, expert, trained)
             return
         self._measure(results, expert, imitating, bands)
 
@@ -105,6 +108,7 @@ class HomeRun:
         methods = References(judge, expert).methods()
         results = self._put(replace(results, methods=methods, optimum=plain_optimum(judge)))
         trained = self._train(imitating, bands)
+        results = self._recommended(results, expert, trained)
         for learned in imitating:
             results = self._learned(results, judge, learned, trained[learned.lesson.label])
         paid = self._paid(expert)
@@ -120,6 +124,11 @@ class HomeRun:
             usual = next(method.runs for method in results.methods if method.method == "HA-1")
             points += pareto.comfort_bands(bands, trained[bands.lesson.label], usual)
         self._put(replace(results, pareto=points))
+
+    def _recommended(self, results: HomeResults, expert: Expert, trained: dict[str, Trained]) -> HomeResults:
+        choice = choose_forecast(expert, self.store)
+        found = Tryout(expert, self.store, choice, trained.get("HA-1")).recommendation()
+        return self._put(replace(results, recommendation=found))
 
     def _learned(self, results: HomeResults, judge: Judge, learned: Learned, trained: Trained) -> HomeResults:
         lesson = learned.lesson

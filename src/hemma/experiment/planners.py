@@ -10,9 +10,10 @@ from hemma.baselines.forecast import Forecaster, hourly_means, perfect, yesterda
 from hemma.baselines.published import PublishedPrices
 from hemma.baselines.rolling import rolling_mpc
 from hemma.evaluation import evaluate
-from hemma.experiment.default import choose_forecast, outlook_of
+from hemma.experiment.default import choose_forecast
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.folds import outlook_of
 from hemma.experiment.judge import Judge, Played
 from hemma.experiment.results import Run
 from hemma.experiment.store import Store

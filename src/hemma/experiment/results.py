@@ -86,6 +86,32 @@ class MethodRegret:
 
 
 @dataclass(frozen=True)
+class JudgedMethod:
+    """What a method cost on training days that it had not been fitted to."""
+
+    method: str
+    daily_cost: float
+    """X1 + X2 at equal comfort [currency/day]."""
+    excess: float
+    """How much more that is than the least of all methods [currency/day]."""
+    standard_error: float
+    """Of the excess, over days [currency/day]."""
+    mean_temperature_deviation: float
+    """[degC]."""
+
+
+@dataclass(frozen=True)
+class Recommendation:
+    """The controller that a home should have, by its training days alone."""
+
+    method: str
+    days: int
+    """How many days it was judged on."""
+    judged: tuple[JudgedMethod, ...]
+    """All methods that stood for it, the simplest first."""
+
+
+@dataclass(frozen=True)
 class ParetoPoint:
     """One point of a sweep that trades energy cost for comfort; a mean where there are several runs."""
 
@@ -120,6 +146,7 @@ class HomeResults:
     """T^low and T^upp [degC]."""
     identification: Identified | None = None
     optimum: PlainOptimum | None = None
+    recommendation: Recommendation | None = None
     methods: tuple[MethodResults, ...] = ()
     data_efficiency: tuple[MethodResults, ...] = ()
     regret: tuple[MethodRegret, ...] = ()

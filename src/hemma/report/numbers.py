@@ -5,11 +5,11 @@ DASH = "–"
 SPACE = "\u00a0"
 
 
-def money(value: float | None, currency: str) -> str:
+def money(value: float | None, currency: str, digits: int = 2) -> str:
     """``$31.20``, or ``31.20 SEK`` for a currency of several letters."""
     if value is None:
         return DASH
-    amount = decimals(abs(value), 2)
+    amount = decimals(abs(value), digits)
     sign = "−" if value < 0 and float(amount) != 0 else ""
     return f"{sign}{currency}{amount}" if len(currency) == 1 else f"{sign}{amount}{SPACE}{currency}"
 

@@ -9,6 +9,7 @@ from hemma.report.figures import HomePictures, Pictures
 from hemma.report.headline import headline, range_of_shares
 from hemma.report.markup import body, cell, definitions, heading, paragraph, row, table
 from hemma.report.overview import overview_section
+from hemma.report.recommendation import recommendation_section
 from hemma.report.results import Results
 from hemma.report.sections import background_section, results_section
 from hemma.report.stylesheet import STYLESHEET
@@ -42,7 +43,8 @@ def _home_section(results: Results, name: str, pictures: HomePictures) -> str:
     rows = [row for row in results_table(results) if row.home == name]
     home = results.homes[name]
     said = paragraph(headline(name, home).text, "lead") if len(results.finished) > 1 else ""
-    return heading(2, f"Results on {name}") + said + results_section(home, rows, pictures)
+    advice = recommendation_section(name, home)
+    return heading(2, f"Results on {name}") + said + results_section(home, rows, pictures) + advice
 
 
 def _title(results: Results) -> str:

@@ -145,3 +145,27 @@ class Optimum(Record):
     bound: Number = None
     """Proven lower bound of the cost [currency]."""
     relative_gap: Number = None
+
+
+class JudgedMethod(Record):
+    """What a method cost on training days that it had not been fitted to."""
+
+    method: str
+    daily_cost: Number = None
+    """X1 + X2 at equal comfort [currency/day]."""
+    excess: Number = None
+    """How much more that is than the least of all methods [currency/day]."""
+    standard_error: Number = None
+    """Of the excess, over days [currency/day]."""
+    mean_temperature_deviation: Number = None
+    """[degC]."""
+
+
+class Recommendation(Record):
+    """The controller that a home should have, by its training days alone."""
+
+    method: str
+    days: int
+    """How many days it was judged on."""
+    judged: tuple[JudgedMethod, ...] = Field(min_length=1)
+    """All methods that stood for it, the simplest first."""

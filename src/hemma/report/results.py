@@ -8,7 +8,15 @@ from pydantic import Field, ValidationError
 
 from hemma.errors import HemmaError
 from hemma.report.findings import Aggregate, Improvement, ParetoPoint, RegretSplit
-from hemma.report.records import DemonstrationRuns, Identification, Method, Optimum, Period, Record
+from hemma.report.records import (
+    DemonstrationRuns,
+    Identification,
+    Method,
+    Optimum,
+    Period,
+    Recommendation,
+    Record,
+)
 
 RESULTS_FILE = "results.json"
 
@@ -28,6 +36,7 @@ class HomeResults(Record):
     traces_sha256: str = ""
     identification: Identification | None = None
     optimum: Optimum | None = None
+    recommendation: Recommendation | None = None
     demonstration_days: dict[str, float] = Field(default_factory=dict)
     data_efficiency: tuple[DemonstrationRuns, ...] = ()
     probability_of_improvement: tuple[Improvement, ...] = ()
