@@ -135,7 +135,8 @@ def test_the_measured_temperature_corrects_a_wrong_model_and_a_disturbance():
     period = noisy(3, 4, mean=33.0)
     forecasts = perfect(whole(period, HOME, 12.0))
     kicks = np.random.default_rng(0).normal(0, 0.3, period.slots)
-    quiet, kicked = (rolling_mpc(wrong, HOME, period, forecasts, disturbances=d) for d in (None, kicks))
+    disturbed = eqx.tree_at(lambda readings: readings.disturbance, faultless(period), kicks)
+    quiet, kicked = (rolling_mpc(wrong, HOME, period, forecasts, readings) for readings in (None, disturbed))
     assert 0.0 < np.max(quiet.steps.costs.temperature_deviation) < 1.0
     assert np.all(np.isfinite(kicked.steps.state.indoor_temperature))
     assert np.mean(kicked.steps.costs.temperature_deviation) < 0.6

@@ -15,6 +15,7 @@ from hemma.expert.constraints import add_battery, add_building, power_balance
 from hemma.expert.programme import EXACT, Programme, SolverSettings
 from hemma.home import Home, HomeState, Trajectory
 from hemma.home.precision import in_double, in_numpy
+from hemma.home.sensors import Measured, Readings, faultless, first_measured, measure_state
 from hemma.types import Action, Array, Exogenous
 
 DEAR = 1000.0
@@ -26,7 +27,7 @@ def rolling_mpc(
     real_home: Home,
     exogenous: Exogenous,
     forecasts: Exogenous,
-    disturbances: Float[Array, "slots"] | None = None,
+    readings: Readings | None = None,
     solver: SolverSettings = EXACT,
 ) -> Trajectory:
     """Run ``real_home`` from its start through ``exogenous``, planning every slot through ``planning_home``.
@@ -38,26 +39,30 @@ def rolling_mpc(
     plan has no value, as in objective (1).
 
     The planning home's thermal model must be affine in the HVAC power; another raises ``HemmaError``.
-    ``disturbances`` are epsilon_t [degC] of the real home, zero unless given. All results are NumPy float64.
+    ``readings`` say what is measured of temperature and energy, and what disturbs the real home; without
+    them everything is as it is. What they make of ``exogenous`` is the affair of whoever forecasts. All
+    results are NumPy float64.
     """
     horizon = _checked_horizon(exogenous, forecasts)
-    disturbances = np.zeros(exogenous.slots) if disturbances is None else disturbances
+    readings = faultless(exogenous) if readings is None else readings
     believed, beliefs = in_numpy((planning_home, forecasts))
     with jax.enable_x64(True):
         planning, ahead = in_double((planning_home, forecasts))
-        real = _RealHome(*in_double((real_home, exogenous, disturbances)))
+        real = _RealHome(*in_double((real_home, exogenous, readings)))
         initial = state = real.home.reset()
+        last = first_measured(state)
     actions = np.empty((exogenous.slots, 2))
     for slot in range(exogenous.slots):
         planned = min(horizon, exogenous.slots - slot)
         with jax.enable_x64(True):
             index = jnp.asarray(slot)
-            measured = planning.thermal_model.initial(state.indoor_temperature)
-            response = _first(affine_response(planning, _row(ahead, index), measured), planned)
+            last = real.measured(state, index, last)
+            thermal = planning.thermal_model.initial(last.temperature)
+            response = _first(affine_response(planning, _row(ahead, index), thermal), planned)
             window = jax.tree.map(lambda x, slot=slot, planned=planned: x[slot, :planned], beliefs)
-            actions[slot] = _plan(believed, window, response, float(state.battery_energy), solver)
+            actions[slot] = _plan(believed, window, response, float(last.energy), solver)
             state = real.after(state, index, actions[slot])
-    return carry_out(real_home, exogenous, Action(*actions.T), initial, disturbances)
+    return carry_out(real_home, exogenous, Action(*actions.T), initial, readings.disturbance)
 
 
 def comfort_price(home: Home, window: Exogenous, response: AffineResponse) -> float:
@@ -111,12 +116,19 @@ class _RealHome:
 
     home: Home
     exogenous: Exogenous
-    disturbances: Float[Array, "slots"]
+    readings: Readings
+
+    def measured(self, state: HomeState, slot: Int[Array, ""], last: Measured) -> Measured:
+        """What is read of ``state`` at the start of ``slot``."""
+        return _measured(self.home, state, self.readings, slot, last)
 
     def after(self, state: HomeState, slot: Int[Array, ""], action: Float[np.ndarray, "2"]) -> HomeState:
         """State at the end of ``slot`` under ``action`` = (e, h) [kW]."""
-        driven = (self.exogenous, self.disturbances)
+        driven = (self.exogenous, self.readings.disturbance)
         return _stepped(self.home, driven, slot, state, Action(*jnp.asarray(action)))
+
+
+_measured = eqx.filter_jit(measure_state)
 
 
 @eqx.filter_jit

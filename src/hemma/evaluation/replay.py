@@ -1,13 +1,14 @@
 """Replay a controller over a period in double precision: what every method is measured by."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import equinox as eqx
 import jax
 import numpy as np
 from jaxtyping import Float
 
-from hemma.home import Controller, Home, Trajectory, replay
+from hemma.home import Controller, Home, Step, Trajectory, replay
 from hemma.home.precision import in_double
 from hemma.types import Array, Exogenous, Scalar
 
@@ -55,7 +56,7 @@ def evaluate(
     """
     with jax.enable_x64(True):
         inputs = in_double((home, exogenous, controller, key, disturbance_deviation))
-        return _outcome(_replayed(*inputs), ())
+        return outcome_of(_replayed(*inputs).steps)
 
 
 def evaluate_stacked(
@@ -66,7 +67,7 @@ def evaluate_stacked(
     with jax.enable_x64(True):
         inputs = in_double((home, exogenous, controllers, keys, disturbance_deviation))
         trajectories = _replayed_stacked(*inputs)
-        return tuple(_outcome(trajectories, (seed,)) for seed in range(len(keys)))
+        return tuple(outcome_of(trajectories.steps, (seed,)) for seed in range(len(keys)))
 
 
 def _run(
@@ -82,15 +83,16 @@ _replayed_stacked = eqx.filter_jit(
 )
 
 
-def _outcome(trajectory: Trajectory, index: tuple[int, ...]) -> Outcome:
-    steps = jax.tree.map(lambda x: np.asarray(x)[index], trajectory.steps)
+def outcome_of(steps: Step, index: tuple[int, ...] = ()) -> Outcome:
+    """The outcome of carried-out ``steps``, shape (slots,), or of one of many stacked in front."""
+    taken: Any = jax.tree.map(lambda x: np.asarray(x)[index], steps)
     return Outcome(
-        battery_power=steps.action.battery_power,
-        hvac_power=steps.action.hvac_power,
-        battery_energy=steps.state.battery_energy,
-        indoor_temperature=steps.state.indoor_temperature,
-        grid_power=steps.grid_power,
-        transaction=steps.costs.transaction,
-        ageing=steps.costs.ageing,
-        temperature_deviation=steps.costs.temperature_deviation,
+        battery_power=taken.action.battery_power,
+        hvac_power=taken.action.hvac_power,
+        battery_energy=taken.state.battery_energy,
+        indoor_temperature=taken.state.indoor_temperature,
+        grid_power=taken.grid_power,
+        transaction=taken.costs.transaction,
+        ageing=taken.costs.ageing,
+        temperature_deviation=taken.costs.temperature_deviation,
     )

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 
 from hemma.baselines.shape_forecast import ShapeForecast
 from hemma.data import Tariff
+from hemma.experiment.faults import FaultSettings
 from hemma.expert.hierarchy import HierarchySettings
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Home, Hvac
 from hemma.home.checks import require
@@ -135,6 +136,8 @@ class Experiment:
     comfort_price: ComfortPrices = field(default_factory=ComfortPrices)
     pareto: ParetoSettings = field(default_factory=ParetoSettings)
     default: DefaultController = field(default_factory=DefaultController)
+    faults: FaultSettings = field(default_factory=FaultSettings)
+    """Of `hemma robustness`."""
     forecast_horizon: float = 36.0
     """How far ahead the rolling planners (MPC) look [h]."""
     learned: tuple[str, ...] = LEARNED

@@ -1,0 +1,168 @@
+"""The table again under faults: what was trained under good conditions meets bad ones."""
+
+from dataclasses import asdict, dataclass
+
+import equinox as eqx
+import jax
+import numpy as np
+
+from hemma.baselines.comfort import ComfortHold
+from hemma.baselines.forecast import Outlook
+from hemma.baselines.optimum import OptimumProblem, optimum_problem
+from hemma.baselines.rolling import rolling_mpc
+from hemma.baselines.rule import Rule
+from hemma.baselines.thresholds import fit_thresholds
+from hemma.evaluation import EqualComfort, Outcome, measure
+from hemma.evaluation.replay import outcome_of
+from hemma.experiment.demonstrate import Expert
+from hemma.experiment.faults import Fault, FaultSettings, faults
+from hemma.experiment.fingerprint import code, fingerprint
+from hemma.experiment.planners import Planner, planners
+from hemma.experiment.scenes import Scene, scene
+from hemma.experiment.store import Store
+from hemma.experiment.train import Trained
+from hemma.home import Controller
+from hemma.home.precision import in_double, in_numpy
+from hemma.home.sensors import SafetyLayer, WatchedStep, watched_replay
+
+STAGE = "robustness"
+SEED = 0
+"""Of what goes wrong; the same for all methods, so that they can be compared."""
+
+
+@dataclass(frozen=True)
+class FaultRun:
+    """One run of a method under one fault."""
+
+    method: str
+    seed: int | None
+    energy_cost: float
+    """Sum of X1 + X2 [currency]."""
+    mean_temperature_deviation: float
+    """[degC]."""
+    max_temperature_deviation: float
+    """[degC]."""
+    share_of_savings: float | None
+    """At equal comfort, of what perfect information saves in the same changed home."""
+    regret: float
+    """[currency]."""
+    limited: int | None
+    """Slots in which the safety layer limited an action; None for planners, which it does not watch."""
+    comfort_overrides: int | None
+    """Slots in which it took the HVAC over."""
+
+
+@dataclass(frozen=True)
+class FaultResults:
+    """All methods under one fault."""
+
+    fault: str
+    meaning: str
+    repaired_readings: int
+    """Slots in which a reading was missing and the last one was taken."""
+    runs: tuple[FaultRun, ...]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Lets the methods of one home meet every fault in its test period."""
+
+    expert: Expert
+    store: Store
+    trained: dict[str, Trained]
+    """Learned methods by name."""
+
+    def results(self) -> tuple[FaultResults, ...]:
+        """One entry a fault, nothing wrong first."""
+        settings = self.expert.case.experiment.faults
+        every = faults(settings)
+        self.store.progress.started(STAGE, len(every))
+        found = []
+        for number, fault in enumerate(every):
+            found.append(self._kept(fault, settings))
+            self.store.progress.advanced(STAGE, number + 1, fault.name)
+        self.store.progress.finished(STAGE, f"{len(every)} faults")
+        return tuple(found)
+
+    def _kept(self, fault: Fault, settings: FaultSettings) -> FaultResults:
+        marks = {name: one.mark for name, one in self.trained.items()}
+        layers = code("evaluation", "baselines", "expert", "home", "experiment")
+        mark = fingerprint(STAGE, layers, self.expert.mark, settings, fault.name, sorted(marks.items()))
+        product = f"{STAGE}-{fault.name.replace(' ', '-')}"
+        content = self.store.kept(product, mark)
+        if content is None:
+            content = asdict(self._met(fault, settings))
+            self.store.keep(product, mark, [], content)
+        return FaultResults(**{**content, "runs": tuple(FaultRun(**run) for run in content["runs"])})
+
+    def _met(self, fault: Fault, settings: FaultSettings) -> FaultResults:
+        case = self.expert.case
+        now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
+        problem = optimum_problem(now.home, now.exogenous)
+        runs: list[FaultRun] = []
+        for method, controller in self._plain().items():
+            runs.append(self._watched(method, None, controller, now, problem))
+        for planner in planners(self.expert, self.store):
+            if planner.is_causal:
+                runs.append(self._planned(planner, now, problem))
+        for method, one in self.trained.items():
+            for seed in range(one.controllers.scaler.centre.shape[0]):
+                controller = jax.tree.map(lambda x, seed=seed: x[seed], one.controllers)
+                runs.append(self._watched(method, seed, controller, now, problem))
+        return FaultResults(fault.name, fault.meaning, now.repaired, tuple(runs))
+
+    def _plain(self) -> dict[str, Controller]:
+        case, believed = self.expert.case, self.expert.planning_home
+        return {
+            "Rule": Rule(case.home.hvac, case.home.comfort),
+            "no battery": ComfortHold(believed),
+            "thresholds": fit_thresholds(believed, case.training),
+        }
+
+    def _watched(
+        self, method: str, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
+    ) -> FaultRun:
+        safety = SafetyLayer(self.expert.planning_home, self.expert.case.experiment.faults.margin)
+        with jax.enable_x64(True):
+            inputs = in_double((now.home, now.exogenous, controller, now.readings, safety, jax.random.key(0)))
+            watched = in_numpy(_replayed(*inputs))
+        changes = watched.interventions
+        counts = (int(np.sum(changes.limited)), int(np.sum(changes.comfort)))
+        return _judged(method, seed, outcome_of(watched.step), problem, counts)
+
+    def _planned(self, planner: Planner, now: Scene, problem: OptimumProblem) -> FaultRun:
+        case = self.expert.case
+        outlook = Outlook(
+            case.training,
+            now.readings.exogenous,
+            float(case.home.slot_length),
+            case.experiment.forecast_horizon,
+        )
+        forecasts = planner.forecaster(outlook)
+        path = rolling_mpc(self.expert.planning_home, now.home, now.exogenous, forecasts, now.readings)
+        return _judged(planner.method, None, outcome_of(path.steps), problem, None)
+
+
+@eqx.filter_jit
+def _replayed(home, exogenous, controller, readings, safety, key) -> WatchedStep:
+    return watched_replay(home, exogenous, controller, readings, safety, key)
+
+
+def _judged(
+    method: str, seed: int | None, outcome: Outcome, problem: OptimumProblem, counts: tuple[int, int] | None
+) -> FaultRun:
+    """Its measures; perfect information knows the changed home, and no disturbance."""
+    budget = max(outcome.total_deviation, problem.least_deviation)
+    reference = EqualComfort(problem.solve(budget).cost, problem.solve(budget, battery=False).cost)
+    metrics = measure(outcome, reference)
+    return FaultRun(
+        method=method,
+        seed=seed,
+        energy_cost=metrics.energy_cost,
+        mean_temperature_deviation=metrics.mean_temperature_deviation,
+        max_temperature_deviation=float(np.max(outcome.temperature_deviation)),
+        share_of_savings=metrics.share_of_savings,
+        regret=metrics.regret,
+        limited=None if counts is None else counts[0],
+        comfort_overrides=None if counts is None else counts[1],
+    )
