@@ -18,7 +18,7 @@ from hemma.irl.learned_reward import load_rewards
 from hemma.irl.reward import ShapedReward
 
 BY_NAME = {change.name: change for change in CHANGES}
-FEW = tuple(BY_NAME[name] for name in ("unchanged", "twice the battery", "leaky, unnoticed"))
+FEW = tuple(BY_NAME[name] for name in ("unchanged", "twice the battery"))
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +99,7 @@ def test_airl_leaves_the_rewards_of_all_its_runs_and_gail_none(done):
 
 def test_every_home_has_every_method_and_a_policy_is_not_trained_twice(done):
     _, content = done
-    assert list(content["places"]) == ["unchanged", "twice the battery", "leaky, unnoticed"]
+    assert list(content["places"]) == ["unchanged", "twice the battery"]
     for name, place in content["places"].items():
         anew = set() if name == "unchanged" else {"AIRL anew"}
         known = {POLICY, GAIL, "adapted by r", "PPO on r", "PPO on g", "PPO on the bill"}

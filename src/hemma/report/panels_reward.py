@@ -26,6 +26,8 @@ COOL_TO_WARM = LinearSegmentedColormap.from_list(
 DISAGREE = "/////"
 LEVELS = 14
 """Bounds of the steps of colour, an even number so that the middle step is white."""
+TICKS = 7
+"""Numbers beside the colours."""
 POWER_SPREAD = 0.25
 """Runs disagree where their standard deviation is more than this share of the battery's power."""
 TEMPERATURE_SPREAD = 0.2
@@ -73,7 +75,11 @@ def battery_figure(maps: Sequence[BatteryMap]) -> Figure:
     axes[1, 0].set_ylabel("Paid best by g alone\nBattery energy (kWh)")
     if drawn is not None:
         figure.colorbar(
-            drawn, ax=axes, label="Battery power, charging positive (kW)", aspect=36, format="%.1f"
+            drawn,
+            ax=axes,
+            label="Battery power, charging positive (kW)",
+            aspect=36,
+            ticks=np.linspace(-limit, limit, TICKS),
         )
     _explain(figure, f"runs differ by more than {plain(POWER_SPREAD * limit)} kW (standard deviation)")
     return figure
@@ -101,7 +107,11 @@ def comfort_figure(one: ComfortMap) -> Figure:
     panels[0].set_ylabel("Indoor temperature (°C)")
     if drawn is not None:
         maps.colorbar(
-            drawn, ax=panels.tolist(), label="Indoors at the end of the slot (°C)", aspect=30, format="%.1f"
+            drawn,
+            ax=panels.tolist(),
+            label="Indoors at the end of the slot (°C)",
+            aspect=30,
+            ticks=np.linspace(levels[0], levels[-1], TICKS),
         )
     _pay(curves.subplots(), one)
     _explain(maps, f"runs differ by more than {plain(TEMPERATURE_SPREAD)} °C (standard deviation)")
