@@ -9,13 +9,14 @@ import typer
 
 from hemma.cli.compilation import keep_compiled_code
 from hemma.cli.console import WIDTH, going_on_later, print_json, show_progress
-from hemma.cli.experiment import Json, Quick, Seeds, Settings, chosen_experiment
+from hemma.cli.experiment import Quick, Seeds, Settings, chosen_experiment
 
 if TYPE_CHECKING:
     from hemma.experiment.transfer import TransferJob
 
 Home = Annotated[int, typer.Option("--home", help="Embedded home, 1 to 6.")]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the test's results.")]
+Json = Annotated[bool, typer.Option("--json", help="Print transfer.json instead of a table.")]
 OUT = Path("transfer")
 
 
