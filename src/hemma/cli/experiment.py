@@ -14,6 +14,7 @@ from hemma.cli.homes import chosen_homes
 
 if TYPE_CHECKING:
     from hemma.experiment.run import Job
+    from hemma.experiment.settings import Experiment
 
 Traces = Annotated[
     Path | None,
@@ -144,7 +145,7 @@ def _job(request: Request) -> "Job":
 
     if request.traces is not None and request.homes:
         raise HemmaError("expected --traces FILE or --home N (--homes LIST), got both; leave one of them out")
-    experiment = _experiment(request)
+    experiment = chosen_experiment(request.settings, request.seeds, request.quick)
     if request.traces is None:
         homes = embedded_homes(experiment, request.homes or (1,))
     else:
@@ -153,17 +154,18 @@ def _job(request: Request) -> "Job":
     return Job(experiment, homes, request.folder, request.test_from, command)
 
 
-def _experiment(request: Request):
+def chosen_experiment(file: Path | None, seeds: int | None, is_quick: bool) -> "Experiment":
+    """The settings of a file, or the defaults, with what the command line says otherwise."""
     from dataclasses import replace
 
     from hemma.errors import HemmaError
     from hemma.experiment.settings import Experiment, quick
     from hemma.experiment.settings_file import read_settings
 
-    experiment = Experiment() if request.settings is None else read_settings(request.settings)
-    experiment = quick(experiment) if request.quick else experiment
-    if request.seeds is None:
+    experiment = Experiment() if file is None else read_settings(file)
+    experiment = quick(experiment) if is_quick else experiment
+    if seeds is None:
         return experiment
-    if request.seeds < 1:
-        raise HemmaError(f"--seeds: expected a number of runs of at least 1, got {request.seeds}. Correct it")
-    return replace(experiment, seeds=request.seeds)
+    if seeds < 1:
+        raise HemmaError(f"--seeds: expected a number of runs of at least 1, got {seeds}. Correct it")
+    return replace(experiment, seeds=seeds)

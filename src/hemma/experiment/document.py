@@ -73,9 +73,9 @@ def home_document(home: HomeResults) -> dict[str, Any]:
         content["recommendation"] = asdict(home.recommendation)
         content["recommendation"]["judged"] = [_finite(asdict(one)) for one in home.recommendation.judged]
     content["demonstration_days"] = {m.method: m.days for m in home.methods if m.days is not None}
-    content["methods"] = {m.method: _method_document(m.runs) for m in home.methods}
+    content["methods"] = {m.method: method_document(m.runs) for m in home.methods}
     content["data_efficiency"] = [
-        {"days": m.days, "method": m.method, **_method_document(m.runs)} for m in home.data_efficiency
+        {"days": m.days, "method": m.method, **method_document(m.runs)} for m in home.data_efficiency
     ]
     content["regret"] = {r.method: _regret_document(r) for r in home.regret}
     content["pareto"] = [{**_finite(asdict(p)), "schedules": list(p.schedules)} for p in home.pareto]
@@ -104,13 +104,14 @@ def _identification_document(identified: Identified) -> dict[str, Any]:
     }
 
 
-def _method_document(runs: Sequence[Run]) -> dict[str, Any]:
+def method_document(runs: Sequence[Run]) -> dict[str, Any]:
+    """The entry of a method: its runs, and what they say together."""
     names = [field.name for field in fields(Metrics)]
     summaries = {name: summarise([getattr(run.metrics, name) for run in runs]) for name in names}
     return {
         "runs": [_run_document(run) for run in runs],
         "mean": {name: summary.mean for name, summary in summaries.items()},
-        "interval": {name: _bounds(summary.interval) for name, summary in summaries.items()},
+        "interval": {name: bounds(summary.interval) for name, summary in summaries.items()},
         "interval_kind": interval_kind([len(runs)]),
         "interquartile_mean": {name: summary.interquartile_mean for name, summary in summaries.items()},
         "worst_seed": _worst_seed(runs),
@@ -138,7 +139,8 @@ def _regret_document(regret: MethodRegret) -> dict[str, Any]:
     return _finite({name: value for name, value in asdict(regret).items() if name != "method"})
 
 
-def _bounds(interval: Interval | None) -> list[float] | None:
+def bounds(interval: Interval | None) -> list[float] | None:
+    """Low and high, or null where there is no interval."""
     return None if interval is None else [interval.low, interval.high]
 
 

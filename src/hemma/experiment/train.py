@@ -14,6 +14,7 @@ from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.experiment.curves import write_curves
 from hemma.experiment.fingerprint import code, fingerprint
+from hemma.experiment.rewards import keep_rewards
 from hemma.experiment.store import Store
 from hemma.rl.policy import PolicyController
 from hemma.rl.task import Task, side_by_side
@@ -178,7 +179,8 @@ def _keep(lesson: Lesson, training: Training, seconds: float, store: Store) -> N
     write_curves(store.folder, curves, training.curve, home)
     made = controllers(training, lesson.task, lesson.algorithm)
     save_tree(store.folder / file, made, {"fingerprint": lesson.mark})
-    store.keep(lesson.label, lesson.mark, [file, *curves], {"seconds": seconds})
+    rewards = keep_rewards(training, lesson.task, lesson.label, store)
+    store.keep(lesson.label, lesson.mark, [file, *rewards, *curves], {"seconds": seconds})
 
 
 def _taken(lesson: Lesson, store: Store) -> Trained:

@@ -1,6 +1,6 @@
 """Reinforcement learning on the explicit reward of the paper's baselines: r = -(X1 + X2) - beta_T X3."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -87,14 +87,27 @@ class ExplicitLearning:
 
     def iterate(self, state: ExplicitState, task: Task[ExplicitReward]) -> tuple[ExplicitState, Measured]:
         """One improvement of the policy."""
+        return self.improved(state, task.environment, lambda rollout: scaled_reward(rollout, task))
+
+    def improved(
+        self,
+        state: ExplicitState,
+        environment: Environment,
+        paid: Callable[[Rollout], Array],
+        scaled: Callable[[Array], Array] = lambda rewards: rewards,
+    ) -> tuple[ExplicitState, Measured]:
+        """One improvement of the policy on what a rollout is ``paid``, shape (slots, rollouts).
+
+        What is shown is the pay as it is, what is learned from is the pay ``scaled``.
+        """
         settings, n = self.settings, state.iteration
         key, explore_key, improve_key = jax.random.split(state.key, 3)
         effort = Effort(
             settings.exploration.deviation(n, settings.iterations), falling(n, settings.iterations)
         )
-        rollout = self.improvement.explore(state.learner, task.environment, effort, explore_key)
-        rewards = scaled_reward(rollout, task)
-        learner = self.improvement.improve(state.learner, rollout, rewards, effort, improve_key)
+        rollout = self.improvement.explore(state.learner, environment, effort, explore_key)
+        rewards = paid(rollout)
+        learner = self.improvement.improve(state.learner, rollout, scaled(rewards), effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
         return ExplicitState(learner, average, n + 1, key), measured(rollout, rewards)
 

@@ -1,0 +1,81 @@
+"""``hemma transfer``: is the learned reward worth anything in a changed home?"""
+
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hemma.cli.compilation import keep_compiled_code
+from hemma.cli.console import WIDTH, going_on_later, print_json, show_progress
+from hemma.cli.experiment import Quick, Seeds, Settings, chosen_experiment
+
+if TYPE_CHECKING:
+    from hemma.experiment.transfer import TransferJob
+
+Home = Annotated[int, typer.Option("--home", help="Embedded home, 1 to 6.")]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the test's results.")]
+Json = Annotated[bool, typer.Option("--json", help="Print transfer.json instead of a table.")]
+OUT = Path("transfer")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to ``app``."""
+    app.command()(transfer)
+
+
+def transfer(
+    home: Home = 1,
+    seeds: Seeds = None,
+    settings: Settings = None,
+    out: Out = OUT,
+    quick: Quick = False,
+    json: Json = False,
+) -> None:
+    """Learn a reward in one home, train on it again in changed ones; draw what it wants."""
+    with going_on_later():
+        from hemma.experiment.transfer import transfer as run
+
+        job = _job(home, chosen_experiment(settings, seeds, quick), out)
+        keep_compiled_code()
+        with show_progress() as progress:
+            content = run(job, progress)
+    if json:
+        print_json(content)
+    else:
+        _print_tables(out)
+
+
+def _job(home: int, experiment, folder: Path) -> "TransferJob":
+    from hemma.experiment.load import embedded_homes
+    from hemma.experiment.transfer import TransferJob
+
+    [traces] = embedded_homes(experiment, (home,))
+    return TransferJob(experiment, traces, folder, command=shlex.join(["hemma", *sys.argv[1:]]))
+
+
+def _print_tables(folder: Path) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from hemma.report.transfer import HEADINGS, TABLE_FILE, paired_lines, transfer_rows
+    from hemma.report.transfer_results import TRANSFER_FILE, load_transfer
+
+    found = load_transfer(folder)
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    table = Table(*HEADINGS[:2], title=f"{found.home}: mean of the runs, and its 95 % interval")
+    for heading in HEADINGS[2:]:
+        table.add_column(heading, justify="right")
+    last = ""
+    for row in transfer_rows(found):
+        if last and row[0] != last:
+            table.add_section()
+        table.add_row("" if row[0] == last else row[0], *row[1:])
+        last = row[0]
+    console.print(table)
+    for line in paired_lines(found):
+        console.print(line, markup=False)
+    typer.echo(f"Results: {folder / TRANSFER_FILE}")
+    typer.echo(f"Table: {folder / TABLE_FILE}")
+    typer.echo(f"Figures: {folder / 'figures'}")

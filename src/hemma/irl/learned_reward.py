@@ -1,0 +1,82 @@
+"""The learned reward as an asset: r = g + gamma h' - h and the scaling that it was learned in, on disk."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Float
+
+from hemma.checkpoint import load_header, load_tree, save_tree
+from hemma.errors import HemmaError
+from hemma.irl.reward import ShapedReward
+from hemma.rl.environment import Transitions
+from hemma.rl.scaling import StateScaler
+from hemma.types import Array
+
+KIND = "learned reward"
+
+
+class LearnedReward(eqx.Module):
+    """What AIRL leaves behind besides a policy: one reward, or those of many runs along a first axis.
+
+    It reads states in their units through its scaler, and actions as fractions of what is feasible
+    (``hemma.rl.actions``): which powers these are is a matter of the home it is asked about.
+    """
+
+    head: ShapedReward
+    """r, of scaled states."""
+    scaler: StateScaler
+    """That of the demonstrations."""
+
+    @property
+    def runs(self) -> int:
+        """How many runs there are."""
+        return self.scaler.centre.shape[0]
+
+    def run(self, number: int) -> "LearnedReward":
+        """That of one run."""
+        return jax.tree.map(lambda x: x[number], self)
+
+    def transitions(
+        self,
+        states: Float[Array, "*batch 7"],
+        fractions: Float[Array, "*batch actions"],
+        next_states: Float[Array, "*batch 7"],
+    ) -> Transitions:
+        """(s, a, s') of states in their units as the head reads them."""
+        return Transitions(self.scaler(states), fractions, self.scaler(next_states))
+
+
+def save_rewards(path: Path, rewards: LearnedReward, header: Mapping[str, Any]) -> None:
+    """Store stacked rewards whole or not at all; ``header`` goes beside what loading them again takes."""
+    g = rewards.head.approximator
+    shape = {
+        "kind": KIND,
+        "axes": list(g.biases[-1].shape[:-1]),
+        "hidden": [bias.shape[-1] for bias in g.biases[:-1]],
+        "discount": rewards.head.discount,
+    }
+    save_tree(path, rewards, {**header, **shape})
+
+
+def load_rewards(path: Path) -> LearnedReward:
+    """What ``save_rewards`` stored, bit for bit; all it takes is the file."""
+    header = load_header(path)
+    if header.get("kind") != KIND:
+        raise HemmaError(
+            f"{path}: expected a learned reward, got another checkpoint; AIRL writes them as "
+            "models/HOME/METHOD.reward.safetensors in its results folder"
+        )
+    head = ShapedReward.random(tuple(header["hidden"]), header["discount"], jax.random.key(0))
+    one = LearnedReward(head, StateScaler(jnp.zeros(6), jnp.ones(6)))
+    axes = tuple(header["axes"])
+    runs = axes[:1]  # the members of a committee share the scaler of their run
+    like = LearnedReward(_stacked(one.head, axes), _stacked(one.scaler, runs))
+    return load_tree(path, like)
+
+
+def _stacked(tree: Any, axes: tuple[int, ...]) -> Any:
+    return jax.tree.map(lambda x: jnp.zeros((*axes, *x.shape), x.dtype), tree)
