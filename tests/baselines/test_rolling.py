@@ -18,6 +18,7 @@ from hemma.baselines.rolling import comfort_price, rolling_mpc
 from hemma.errors import HemmaError
 from hemma.expert.affine import affine_response
 from hemma.home import Battery, ExplicitThermalModel, Home, Hvac, Trajectory, benchmark_home
+from hemma.home.sensors import faultless
 from hemma.types import Exogenous
 
 HOME = Home()

@@ -51,6 +51,9 @@ def test_members_of_a_committee_are_one_more_axis(tmp_path):
     again = load_rewards(tmp_path / "r.safetensors")
     for a, b in zip(jax.tree.leaves(kept), jax.tree.leaves(again), strict=True):
         np.testing.assert_array_equal(a, b)
+    assert (again.runs, again.members, learned().members) == (2, 3, 1)
+    one, third = again.run(1, member=2), jax.tree.map(lambda x: x[1, 2], heads)
+    np.testing.assert_array_equal(one.head.rewards(transitions(9)), third.rewards(transitions(9)))
 
 
 def test_another_checkpoint_is_refused_with_where_to_look(tmp_path):

@@ -132,13 +132,14 @@ def _run(verb: str, request: Request) -> Any:
         from hemma.experiment.run import Stage, run
 
         last = Stage.REPORT if verb == "reproduce" else Stage[verb.upper()]
-        job = _job(request)
+        job = job_of(request)
         keep_compiled_code()
         with show_progress() as progress:
             return run(job, last, progress)
 
 
-def _job(request: Request) -> "Job":
+def job_of(request: Request) -> "Job":
+    """The homes and settings that were asked for."""
     from hemma.errors import HemmaError
     from hemma.experiment.load import embedded_homes, own_home
     from hemma.experiment.run import Job

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import hemma
-from hemma.cli import compare, data, experiment, transfer
+from hemma.cli import compare, data, experiment, robustness, transfer
 from hemma.errors import HemmaError
 
 MISTAKE = 2
@@ -32,6 +32,7 @@ app = typer.Typer(
 app.add_typer(data.app, name="data")
 experiment.register(app)
 compare.register(app)
+robustness.register(app)
 transfer.register(app)
 
 

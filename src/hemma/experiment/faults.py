@@ -44,6 +44,8 @@ class FaultSettings:
     """What prices are multiplied by in such an hour."""
     household: float = 1.5
     """What the load of another household is multiplied by; its PV is divided by the same."""
+    runs: int = 3
+    """How many runs of a learned method are measured, the first ones."""
     margin: float = 1.0
     """How far beyond the band the safety layer lets the temperature go [degC]."""
 
@@ -51,6 +53,7 @@ class FaultSettings:
         """Refuse magnitudes without meaning."""
         for name in ("disturbance", "temperature_noise", "energy_noise", "demand_noise", "margin"):
             require("faults", getattr(self, name) >= 0, f"{name} >= 0", getattr(self, name))
+        require("faults", self.runs >= 1, "runs >= 1", self.runs)
         require("faults", 0 <= self.building < 1, "0 <= building < 1", self.building)
         require("faults", 0 < self.efficiency <= 1, "0 < efficiency <= 1", self.efficiency)
         require("faults", 0 <= self.spikes <= 1, "0 <= spikes <= 1", self.spikes)

@@ -12,7 +12,7 @@ from hemma.rl.training import Training
 
 
 def learned_head(training: Training) -> ShapedReward | None:
-    """The heads of all runs, stacked; None where the learner leaves no reward behind."""
+    """The heads of all runs, and of all agents of a run, stacked; None where no reward is left behind."""
     state = training.state
     head = state.head if isinstance(state, TrainingState) else None
     return head if isinstance(head, ShapedReward) else None

@@ -106,7 +106,7 @@ class Trial:
             if planner.is_causal:
                 runs.append(self._planned(planner, now, problem))
         for method, one in self.trained.items():
-            for seed in range(one.controllers.scaler.centre.shape[0]):
+            for seed in range(min(one.controllers.scaler.centre.shape[0], settings.runs)):
                 controller = jax.tree.map(lambda x, seed=seed: x[seed], one.controllers)
                 runs.append(self._watched(method, seed, controller, now, problem))
         return FaultResults(fault.name, fault.meaning, now.repaired, tuple(runs))
@@ -127,7 +127,7 @@ class Trial:
             inputs = in_double((now.home, now.exogenous, controller, now.readings, safety, jax.random.key(0)))
             watched = in_numpy(_replayed(*inputs))
         changes = watched.interventions
-        counts = (int(np.sum(changes.limited)), int(np.sum(changes.comfort)))
+        counts = (int(np.sum(np.asarray(changes.limited))), int(np.sum(np.asarray(changes.comfort))))
         return _judged(method, seed, outcome_of(watched.step), problem, counts)
 
     def _planned(self, planner: Planner, now: Scene, problem: OptimumProblem) -> FaultRun:

@@ -41,9 +41,9 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     traces or version differ is done again.
     """
     progress = Silence() if progress is None else progress
-    _require_different_names(job.homes)
+    require_different_names(job.homes)
     cases = [make_case(job.experiment, traces, job.test_from) for traces in job.homes]
-    _require_writable(job.folder)
+    require_writable(job.folder)
     ledger = open_ledger(job.folder, Head(job.command, outside(job.experiment)), progress)
     for case in cases:
         HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)
@@ -53,14 +53,15 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     return ledger.content
 
 
-def _require_different_names(homes: Sequence[Traces]) -> None:
+def require_different_names(homes: Sequence[Traces]) -> None:
+    """Refuse homes that would overwrite each other's results."""
     names = [home.name for home in homes]
     for name in names:
         if names.count(name) > 1:
             raise HemmaError(f"expected homes with different names, got {name} twice; name each of them once")
 
 
-def _require_writable(folder: Path) -> None:
+def require_writable(folder: Path) -> None:
     """Find out before hours of work that there is nowhere to put them."""
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,6 @@ import jax
 
 from hemma.experiment.demonstrate import Demonstration, Expert, demonstration
 from hemma.experiment.fingerprint import fingerprint
-from hemma.experiment.lessons import airl
 from hemma.experiment.places import Place
 from hemma.experiment.settings import Experiment
 from hemma.experiment.store import Store
@@ -99,8 +98,9 @@ def imitation_lesson(settled: Settled, algorithm: AdversarialImitation, name: st
 
 
 def airl_lesson(settled: Settled) -> Lesson:
-    """AIRL from the demonstrations of that place."""
-    return imitation_lesson(settled, airl(settled.experiment), "AIRL")
+    """AIRL from the demonstrations of that place: one agent, so that a run has one reward to carry over."""
+    experiment = settled.experiment
+    return imitation_lesson(settled, AdversarialImitation(experiment.airl, Proximal(experiment.ppo)), "AIRL")
 
 
 def gail_lesson(settled: Settled) -> Lesson:

@@ -22,6 +22,8 @@ KIND = "learned reward"
 class LearnedReward(eqx.Module):
     """What AIRL leaves behind besides a policy: one reward, or those of many runs along a first axis.
 
+    Where several agents learned in a run, the rewards of a run lie along a second axis of the head.
+
     It reads states in their units through its scaler, and actions as fractions of what is feasible
     (``hemma.rl.actions``): which powers these are is a matter of the home it is asked about.
     """
@@ -36,9 +38,21 @@ class LearnedReward(eqx.Module):
         """How many runs there are."""
         return self.scaler.centre.shape[0]
 
-    def run(self, number: int) -> "LearnedReward":
-        """That of one run."""
-        return jax.tree.map(lambda x: x[number], self)
+    @property
+    def members(self) -> int:
+        """How many rewards a run has."""
+        axes = self._axes
+        return axes[1] if len(axes) > 1 else 1
+
+    @property
+    def _axes(self) -> tuple[int, ...]:
+        return self.head.approximator.biases[-1].shape[:-1]
+
+    def run(self, number: int, member: int = 0) -> "LearnedReward":
+        """That of one run, or of one agent of it."""
+        place = (number, member) if len(self._axes) > 1 else (number,)
+        head = jax.tree.map(lambda x: x[place], self.head)
+        return LearnedReward(head, jax.tree.map(lambda x: x[number], self.scaler))
 
     def transitions(
         self,
@@ -55,7 +69,7 @@ def save_rewards(path: Path, rewards: LearnedReward, header: Mapping[str, Any]) 
     g = rewards.head.approximator
     shape = {
         "kind": KIND,
-        "axes": list(g.biases[-1].shape[:-1]),
+        "axes": list(rewards._axes),
         "hidden": [bias.shape[-1] for bias in g.biases[:-1]],
         "discount": rewards.head.discount,
     }

@@ -1,0 +1,112 @@
+"""``hemma robustness``: train what is not trained yet, and let every method meet every fault."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from typing import Any
+
+import hemma
+from hemma.checkpoint import write_atomically
+from hemma.evaluation import summarise
+from hemma.experiment.case import Case, make_case
+from hemma.experiment.demonstrate import Expert
+from hemma.experiment.document import CODE, INTERVAL_KIND, bounds
+from hemma.experiment.explicit import explicit_lesson, explicit_methods, sweep_comfort_price
+from hemma.experiment.identify import identify
+from hemma.experiment.keys import outside
+from hemma.experiment.lessons import imitations, lessons
+from hemma.experiment.progress import Progress, Silence
+from hemma.experiment.robustness import SEED, FaultResults, FaultRun, Trial
+from hemma.experiment.run import Job, require_different_names, require_writable
+from hemma.experiment.settings import DataEfficiency
+from hemma.experiment.store import Store
+from hemma.experiment.train import Trained, train_lesson, train_lessons
+from hemma.report.robustness import write_robustness_report
+from hemma.report.robustness_results import ROBUSTNESS_FILE
+
+SCHEMA = 1
+SUMMARISED = (
+    "energy_cost",
+    "mean_temperature_deviation",
+    "max_temperature_deviation",
+    "share_of_savings",
+    "regret",
+)
+
+
+def run_faults(job: Job, progress: Progress | None = None) -> dict[str, Any]:
+    """All homes of the job; the content of ``robustness.json``.
+
+    What an earlier command left in the folder is used, the rest is trained; the same call goes on where it
+    stopped.
+    """
+    progress = Silence() if progress is None else progress
+    require_different_names(job.homes)
+    plain = replace(job.experiment, data_efficiency=DataEfficiency(days=()))
+    cases = [make_case(plain, traces, job.test_from) for traces in job.homes]
+    require_writable(job.folder)
+    content: dict[str, Any] = {
+        "schema": SCHEMA,
+        "hemma": hemma.__version__,
+        "code": CODE,
+        "command": job.command,
+        "settings": outside(job.experiment),
+        "interval_kind": INTERVAL_KIND,
+        "seed_of_faults": SEED,
+        "homes": {},
+    }
+    for case in cases:
+        store = Store(job.folder, case.name, progress)
+        expert = Expert(case, identify(case, store))
+        found = Trial(expert, store, learned_methods(expert, store)).results()
+        content["homes"][case.name] = _home(case, found)
+        text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
+        write_atomically(job.folder / ROBUSTNESS_FILE, (text + "\n").encode())
+    write_robustness_report(job.folder)
+    return content
+
+
+def learned_methods(expert: Expert, store: Store) -> dict[str, Trained]:
+    """The controllers of all learned methods, those of earlier commands where they are kept."""
+    case = expert.case
+    wanted = imitations(case.experiment, case.training_days)
+    made = lessons(case, expert, store, wanted)
+    trained: dict[str, Trained] = {}
+    for algorithm in dict.fromkeys(lesson.algorithm for lesson in made):
+        same = [lesson for lesson in made if lesson.algorithm == algorithm]
+        done = train_lessons(same, store)
+        trained |= {lesson.label: one for lesson, one in zip(same, done, strict=True)}
+    for method in explicit_methods(case.experiment):
+        sweep = sweep_comfort_price(expert, store, method)
+        trained[method] = train_lesson(explicit_lesson(expert, method, sweep.chosen), store)
+    return trained
+
+
+def _home(case: Case, found: Sequence[FaultResults]) -> dict[str, Any]:
+    return {
+        "traces_sha256": case.traces.sha256,
+        "currency": case.experiment.currency,
+        "test": {"start": case.parts.test.time_stamps()[0], "slots": case.test.slots},
+        "faults": [
+            {
+                "fault": one.fault,
+                "meaning": one.meaning,
+                "repaired_readings": one.repaired_readings,
+                "methods": _methods(one.runs),
+            }
+            for one in found
+        ],
+    }
+
+
+def _methods(runs: Sequence[FaultRun]) -> dict[str, Any]:
+    content = {}
+    for method in dict.fromkeys(run.method for run in runs):
+        own = [run for run in runs if run.method == method]
+        summaries = {name: summarise([getattr(run, name) for run in own]) for name in SUMMARISED}
+        content[method] = {
+            "runs": [{name: value for name, value in asdict(run).items() if name != "method"} for run in own],
+            "mean": {name: summary.mean for name, summary in summaries.items()},
+            "interval": {name: bounds(summary.interval) for name, summary in summaries.items()},
+        }
+    return content

@@ -1,0 +1,97 @@
+"""All methods under every fault: the main table where nothing is wrong, and never better than the best."""
+
+import json
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tiny_experiment import Watching, tiny_experiment, tiny_job
+
+from hemma.experiment.fault_run import run_faults
+from hemma.experiment.faults import FaultSettings, faults
+from hemma.report.robustness import met, robustness_markdown, robustness_rows, shown
+from hemma.report.robustness_results import load_robustness
+
+HOME = "austin2021-2"
+
+
+@pytest.fixture(scope="module")
+def robust(finished, tmp_path_factory):
+    """Folder, content and progress of the faults of the tiny experiment, in a copy of its folder."""
+    folder = tmp_path_factory.mktemp("robust") / "results"
+    shutil.copytree(finished[0], folder)
+    watching = Watching()
+    return folder, run_faults(tiny_job(folder), watching), watching
+
+
+def test_where_nothing_is_wrong_it_is_the_main_table(finished, robust):
+    main = finished[1]["homes"][HOME]["methods"]
+    nothing = robust[1]["homes"][HOME]["faults"][0]
+    assert (nothing["fault"], nothing["repaired_readings"]) == ("nothing", 0)
+    for method in ("Rule", "no battery", "thresholds", "default", "MPC yesterday", "HA-1"):
+        for one, usual in zip(nothing["methods"][method]["runs"], main[method]["runs"], strict=True):
+            assert one["seed"] == usual["seed"]
+            assert one["energy_cost"] == pytest.approx(usual["energy_cost"], abs=2e-3)
+            assert one["share_of_savings"] == pytest.approx(usual["share_of_savings"], abs=5e-3)
+
+
+def test_every_fault_and_every_method_is_there(robust):
+    found = robust[1]["homes"][HOME]["faults"]
+    assert [one["fault"] for one in found] == [fault.name for fault in faults(FaultSettings())]
+    methods = set(found[0]["methods"])
+    assert {"HA-1", "Rule", "default", "default published", "MPC forecast"} <= methods
+    assert "MPC perfect" not in methods
+    assert all(set(one["methods"]) == methods for one in found)
+
+
+def test_without_a_disturbance_nothing_beats_perfect_information_in_the_same_home(robust):
+    for one in robust[1]["homes"][HOME]["faults"]:
+        if one["fault"] == "disturbed building":
+            continue  # a kick may save what no plan foresaw
+        for method in one["methods"].values():
+            assert all(run["regret"] >= -1e-4 for run in method["runs"])
+
+
+def test_missing_readings_are_counted_and_harm_no_run(robust):
+    found = {one["fault"]: one for one in robust[1]["homes"][HOME]["faults"]}
+    for fault in ("no thermometer", "no battery level"):
+        assert found[fault]["repaired_readings"] == 2  # one hour on each of two days
+        runs = [run for method in found[fault]["methods"].values() for run in method["runs"]]
+        assert all(np.isfinite(run["energy_cost"]) for run in runs)
+    watched = found["noisy sensors"]["methods"]
+    assert watched["HA-1"]["runs"][0]["limited"] is not None
+    assert watched["default"]["runs"][0]["limited"] is None
+
+
+def test_a_second_call_takes_everything_from_the_folder(robust):
+    folder, content, _ = robust
+    before = (folder / "robustness.json").read_bytes()
+    watching = Watching()
+    assert run_faults(tiny_job(folder), watching) == content
+    assert (folder / "robustness.json").read_bytes() == before
+    assert json.loads(before) == content
+
+
+def test_other_magnitudes_give_other_results(robust):
+    folder = robust[0]
+    harder = replace(tiny_experiment(), faults=FaultSettings(efficiency=0.6))
+    other = run_faults(tiny_job(folder.parent / "harder", harder))["homes"][HOME]["faults"]
+    usual = robust[1]["homes"][HOME]["faults"]
+    name = [one["fault"] for one in usual].index("worn battery")
+    costs = [table[name]["methods"]["default"]["runs"][0]["energy_cost"] for table in (usual, other)]
+    assert costs[1] > costs[0]
+
+
+def test_the_table_has_a_row_for_each_fault_and_the_figure_is_drawn(robust):
+    folder = robust[0]
+    found = load_robustness(folder)
+    rows = robustness_rows(found)
+    assert [row[0] for row in rows] == found.faults
+    assert all(len(row) == 1 + len(shown(found)) for row in rows)
+    assert (folder / "robustness.md").read_text() == robustness_markdown(found)
+    assert (folder / "figures" / "robustness.png").stat().st_size > 10_000
+    one = robust[1]["homes"][HOME]["faults"][0]["methods"]["HA-1"]
+    cell = met(found, "nothing", "HA-1")
+    assert cell.share == pytest.approx(one["mean"]["share_of_savings"])
+    assert cell.worst == min(run["share_of_savings"] for run in one["runs"])
