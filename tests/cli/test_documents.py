@@ -39,6 +39,7 @@ def test_every_option_that_is_shown_exists():
         "settings",
         "data",
         "compare",
+        "robustness",
         "transfer",
     }
 

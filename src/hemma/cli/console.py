@@ -106,9 +106,9 @@ def print_recommendations(content: Any) -> None:
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
     for name, entry in content["homes"].items():
-        home = HomeResults.model_validate(entry)
-        if home.recommendation is None:
+        if not entry.get("recommendation"):
             continue
+        home = HomeResults.model_validate(entry)
         first, *others = HEADINGS
         table = Table(first, title=f"{name}: judged on training days alone")
         for heading in others:
