@@ -83,6 +83,7 @@ def test_too_short_a_training_period_is_refused():
         places(Experiment(), load_austin2021(1).window(0, 24 * 50))
 
 
+@pytest.mark.slow
 def test_airl_leaves_the_rewards_of_all_its_runs_and_gail_none(done):
     folder, _ = done
     models = folder / "models" / "austin2021-2"
@@ -97,6 +98,7 @@ def test_airl_leaves_the_rewards_of_all_its_runs_and_gail_none(done):
     assert all(np.isfinite(leaf).all() for leaf in leaves)
 
 
+@pytest.mark.slow
 def test_every_home_has_every_method_and_a_policy_is_not_trained_twice(done):
     _, content = done
     assert list(content["places"]) == ["unchanged", "twice the battery"]
@@ -107,6 +109,7 @@ def test_every_home_has_every_method_and_a_policy_is_not_trained_twice(done):
         assert all(len(method["runs"]) == 2 for method in place["methods"].values())
 
 
+@pytest.mark.slow
 def test_differences_are_taken_seed_by_seed(done):
     _, content = done
     place = content["places"]["twice the battery"]
@@ -120,6 +123,7 @@ def test_differences_are_taken_seed_by_seed(done):
     np.testing.assert_allclose(pair["mean"], expected.mean())
 
 
+@pytest.mark.slow
 def test_figures_and_table_lie_in_the_folder(done):
     folder, _ = done
     for name in ("reward-battery", "reward-comfort", "transfer"):
@@ -127,6 +131,7 @@ def test_figures_and_table_lie_in_the_folder(done):
     assert (folder / "transfer.md").read_text().startswith("| Home | Method |")
 
 
+@pytest.mark.slow
 def test_the_same_call_trains_nothing_again_and_says_the_same(done):
     folder, content = done
     watching = Watching()
