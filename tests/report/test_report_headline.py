@@ -1,5 +1,6 @@
 """The plain words follow the numbers, whichever way they point."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -65,3 +66,13 @@ def test_without_rule_and_optimum_neither_is_spoken_of(small):
     text = _said(folder, content).text
     assert "Rule" not in text
     assert "perfect information" not in text
+
+
+def test_the_default_controller_is_named_beside_the_main_method(small):
+    folder, content = small
+    assert "default controller" not in _said(folder, content).text
+    methods = content["homes"]["home"]["methods"]
+    methods["default"] = json.loads(json.dumps(methods["HA-1"]))
+    methods["default"]["mean"] |= {"energy_cost": 21.5, "share_of_savings": 0.975}
+    said = _said(folder, content).text
+    assert "The default controller costs $21.50 and keeps 97.5\u00a0% of them." in said

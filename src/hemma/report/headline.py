@@ -8,6 +8,9 @@ from hemma.report.numbers import degrees, hundredths, money, percent, plain
 from hemma.report.results import HomeResults, Method
 
 
+DEFAULT = "default"
+
+
 @dataclass(frozen=True)
 class Headline:
     """What a hurried reader takes home."""
@@ -24,6 +27,7 @@ def headline(name: str, home: HomeResults) -> Headline:
         _cost_sentence(name, home, subject, method),
         _reference_sentence(home, subject),
         _savings_sentence(subject, method),
+        _default_sentence(home, subject),
         _comfort_sentence(home, method),
     )
     return Headline(title=_title(home, subject, method), text=" ".join(filter(None, said)))
@@ -76,6 +80,16 @@ def _savings_sentence(subject: str, method: Method) -> str:
     spread = "" if interval is None else f" ({hundredths(interval[0])} to {percent(interval[1])})"
     kept = f"{subject} keeps {percent(share)}{spread}"
     return f"At equal comfort {kept} of the savings that a battery makes possible."
+
+
+def _default_sentence(home: HomeResults, subject: str) -> str:
+    """What the controller would do that a home runs, where the report speaks of another."""
+    if subject == DEFAULT or DEFAULT not in home.methods:
+        return ""
+    mean = home.methods[DEFAULT].mean
+    cost = f"The default controller costs {money(mean.energy_cost, home.currency)}"
+    share = mean.share_of_savings
+    return f"{cost}." if share is None else f"{cost} and keeps {percent(share)} of them."
 
 
 def _comfort_sentence(home: HomeResults, method: Method) -> str:
