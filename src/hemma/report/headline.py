@@ -7,7 +7,6 @@ from hemma.report.methods import main_method
 from hemma.report.numbers import degrees, hundredths, money, percent, plain
 from hemma.report.results import HomeResults, Method
 
-
 DEFAULT = "default"
 
 
