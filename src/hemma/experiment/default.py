@@ -67,8 +67,9 @@ def choose_forecast(expert: Expert, store: Store) -> Choice:
     """
     case = expert.case
     offered = [c for c in candidates(case.experiment, outlook_of(case)) if c.needed <= case.training.slots]
-    mark = fingerprint(STAGE, code("baselines", "expert", "evaluation"), expert.mark, case.experiment.default)
-    mark = fingerprint(STAGE, mark, case.experiment.forecast_horizon)
+    layers = code("baselines", "expert", "evaluation")
+    settings = (case.experiment.default, case.experiment.forecast_horizon)
+    mark = fingerprint(STAGE, layers, expert.mark, settings)
     content = store.kept(STAGE, mark)
     if content is None:
         content = _judged(expert, store, offered)

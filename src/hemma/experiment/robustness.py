@@ -1,6 +1,7 @@
 """The table again under faults: what was trained under good conditions meets bad ones."""
 
 from dataclasses import asdict, dataclass
+from functools import cached_property
 
 import equinox as eqx
 import jax
@@ -100,17 +101,20 @@ class Trial:
         now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
         problem = optimum_problem(now.home, now.exogenous)
         runs: list[FaultRun] = []
-        for method, controller in self._plain().items():
+        for method, controller in self._plain.items():
             runs.append(self._watched(method, None, controller, now, problem))
-        for planner in planners(self.expert, self.store):
-            if planner.is_causal:
-                runs.append(self._planned(planner, now, problem))
+        runs += [self._planned(planner, now, problem) for planner in self._planners]
         for method, one in self.trained.items():
             for seed in range(min(one.controllers.scaler.centre.shape[0], settings.runs)):
                 controller = jax.tree.map(lambda x, seed=seed: x[seed], one.controllers)
                 runs.append(self._watched(method, seed, controller, now, problem))
         return FaultResults(fault.name, fault.meaning, now.repaired, tuple(runs))
 
+    @cached_property
+    def _planners(self) -> list[Planner]:
+        return [planner for planner in planners(self.expert, self.store) if planner.is_causal]
+
+    @cached_property
     def _plain(self) -> dict[str, Controller]:
         case, believed = self.expert.case, self.expert.planning_home
         return {
