@@ -76,7 +76,9 @@ def test_a_missing_price_is_the_last_one_read():
     held = np.flatnonzero(read != true)
     assert 30 <= len(held) <= 40  # some hours cost what the hour before cost
     np.testing.assert_array_equal(read[held], true[held - 1])
-    assert after.repaired == len(held)
+    assert after.repaired == 40  # also those that would have said the same
+    np.testing.assert_array_equal(after.is_price_missing.reshape(40, 24).sum(axis=1), 1)
+    assert set(held) <= set(np.flatnonzero(after.is_price_missing))
     assert unchanged(BEFORE.exogenous, after.exogenous, *QUANTITIES)
 
 

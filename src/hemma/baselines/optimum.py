@@ -1,10 +1,11 @@
 """Perfect information: the least cost that any controller can reach, proved, at a given comfort."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import equinox as eqx
 import jax
 import numpy as np
+from jaxtyping import Float
 
 from hemma.errors import HemmaError
 from hemma.expert.affine import AffineResponse, affine_response
@@ -14,7 +15,7 @@ from hemma.expert.constraints import add_battery, add_building, comfort_budget, 
 from hemma.expert.programme import EXACT, Programme, SolverSettings
 from hemma.home import Home, HomeState, Trajectory
 from hemma.home.precision import in_numpy
-from hemma.types import Action, Exogenous
+from hemma.types import Action, Array, Exogenous
 
 BUDGET_SLACK = 1e-7
 """Added to every budget [degC in total], so that rounding cannot make the least deviation infeasible."""
@@ -55,6 +56,8 @@ class OptimumProblem:
     """The home's thermal model along the weather of the period."""
     least_deviation: float
     """The smallest sum of X3 that any schedule reaches [degC]; 0 where comfort can be held."""
+    disturbances: Float[Array, "slots"] | None = None
+    """epsilon_t [degC], known like everything else; None for zero."""
 
     def solve(
         self, budget: float | None = None, battery: bool = True, solver: SolverSettings = EXACT
@@ -80,7 +83,9 @@ class OptimumProblem:
         e = np.zeros(self.exogenous.slots)
         if store is not None:
             e = net_power(self.home.battery, x[store.charge], x[store.discharge])
-        path = carry_out(self.home, self.exogenous, Action(e, x[building.hvac]), self.initial)
+        path = carry_out(
+            self.home, self.exogenous, Action(e, x[building.hvac]), self.initial, self.disturbances
+        )
         costs = path.steps.costs
         return Optimum(
             actions=path.steps.action,
@@ -103,18 +108,36 @@ class OptimumProblem:
         return max(budget, self.least_deviation)
 
 
-def optimum_problem(home: Home, exogenous: Exogenous, initial: HomeState | None = None) -> OptimumProblem:
+def optimum_problem(
+    home: Home,
+    exogenous: Exogenous,
+    initial: HomeState | None = None,
+    disturbances: Float[Array, "slots"] | None = None,
+) -> OptimumProblem:
     """The problem of ``home`` from ``initial`` (its own initial state unless given) over ``exogenous``.
 
     The thermal model must be affine in the HVAC power, as the explicit model and the physically
-    consistent network are; another raises ``HemmaError``. Disturbances are taken as zero.
+    consistent network are; another raises ``HemmaError``. ``disturbances`` are epsilon_t [degC], zero unless
+    given; perfect information knows them in advance.
     """
     home, exogenous = in_numpy((home, exogenous))
     if initial is None:
         with jax.enable_x64(True):
             initial = home.reset()
     response = affine_response(home, exogenous, initial.thermal)
+    if disturbances is not None:
+        response = replace(response, free=_idle_path(home, exogenous, initial, disturbances))
     programme = Programme(exogenous.slots)
     add_building(programme, home, response, price=1.0)
     least = programme.solve(EXACT).objective
-    return OptimumProblem(home, exogenous, initial, response, least_deviation=max(least, 0.0))
+    return OptimumProblem(home, exogenous, initial, response, max(least, 0.0), disturbances)
+
+
+def _idle_path(
+    home: Home, exogenous: Exogenous, initial: HomeState, disturbances: Float[Array, "slots"]
+) -> Float[np.ndarray, "slots 2"]:
+    """T_in and the model's memory [degC] at the end of each slot of the disturbed house without HVAC."""
+    nothing = np.zeros(exogenous.slots)
+    idle = carry_out(home, exogenous, Action(nothing, nothing), initial, disturbances)
+    thermal = idle.steps.state.thermal
+    return np.stack([thermal.indoor_temperature, thermal.memory], axis=1)

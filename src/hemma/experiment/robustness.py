@@ -99,7 +99,7 @@ class Trial:
     def _met(self, fault: Fault, settings: FaultSettings) -> FaultResults:
         case = self.expert.case
         now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
-        problem = optimum_problem(now.home, now.exogenous)
+        problem = optimum_problem(now.home, now.exogenous, disturbances=now.readings.disturbance)
         runs: list[FaultRun] = []
         for method, controller in self._plain.items():
             runs.append(self._watched(method, None, controller, now, problem))
@@ -155,8 +155,8 @@ def _replayed(home, exogenous, controller, readings, safety, key) -> WatchedStep
 def _judged(
     method: str, seed: int | None, outcome: Outcome, problem: OptimumProblem, counts: tuple[int, int] | None
 ) -> FaultRun:
-    """Its measures; perfect information knows the changed home, and no disturbance."""
-    budget = max(outcome.total_deviation, problem.least_deviation)
+    """Its measures; perfect information knows the changed home, and what will disturb it."""
+    budget = outcome.total_deviation
     reference = EqualComfort(problem.solve(budget).cost, problem.solve(budget, battery=False).cost)
     metrics = measure(outcome, reference)
     return FaultRun(

@@ -21,20 +21,21 @@ class Scene:
     exogenous: Exogenous
     """The real ones."""
     readings: Readings
+    is_price_missing: Bool[np.ndarray, "slots"]
+    """Whether the prices that are read are the last ones before."""
 
     @property
     def repaired(self) -> int:
         """Slots in which a reading was missing, so that the last one was taken."""
-        held = np.asarray(self.readings.exogenous.buying_price) != np.asarray(self.exogenous.buying_price)
         readings = self.readings
         missing = np.asarray(readings.is_temperature_missing) | np.asarray(readings.is_energy_missing)
-        return int(np.sum(held | missing))
+        return int(np.sum(missing | self.is_price_missing))
 
 
 def scene(home: Home, exogenous: Exogenous) -> Scene:
     """Everything as it should be."""
     exogenous = in_numpy(exogenous)
-    return Scene(home, exogenous, in_numpy(faultless(exogenous)))
+    return Scene(home, exogenous, in_numpy(faultless(exogenous)), np.zeros(exogenous.slots, bool))
 
 
 def disturbed(deviation: float, scene: Scene, random: np.random.Generator) -> Scene:
@@ -121,7 +122,8 @@ def without_price(scene: Scene, random: np.random.Generator) -> Scene:
         buying_price=np.asarray(seen.buying_price)[last],
         selling_price=np.asarray(seen.selling_price)[last],
     )
-    return replace(scene, readings=replace(scene.readings, exogenous=seen))
+    readings = replace(scene.readings, exogenous=seen)
+    return replace(scene, readings=readings, is_price_missing=missing)
 
 
 def spiked(spikes: tuple[float, float], scene: Scene, random: np.random.Generator) -> Scene:
@@ -133,14 +135,14 @@ def spiked(spikes: tuple[float, float], scene: Scene, random: np.random.Generato
     real = replace(
         real, buying_price=real.buying_price * multiple, selling_price=real.selling_price * multiple
     )
-    return Scene(scene.home, real, replace(scene.readings, exogenous=real))
+    return replace(scene, exogenous=real, readings=replace(scene.readings, exogenous=real))
 
 
 def another_household(factor: float, scene: Scene, random: np.random.Generator) -> Scene:
     """So many times the load, and PV divided by it."""
     real = scene.exogenous
     real = replace(real, load=real.load * factor, pv_generation=real.pv_generation / factor)
-    return Scene(scene.home, real, replace(scene.readings, exogenous=real))
+    return replace(scene, exogenous=real, readings=replace(scene.readings, exogenous=real))
 
 
 def _an_hour_a_day(exogenous: Exogenous, random: np.random.Generator) -> Bool[np.ndarray, "slots"]:
