@@ -6,6 +6,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 from probe_worlds import traces
 
 from hemma.home import Home
@@ -52,6 +53,7 @@ def policy_of(task, learner=LEARNER):
     return jax.tree.map(lambda x: x[0], training.controllers(trained, runs, learner).policy)
 
 
+@pytest.mark.slow
 def test_it_finds_what_a_known_reward_pays_best():
     """The best is 0, everything at rest earns -0.45."""
     known = task(Known(jnp.asarray(1.0)))
@@ -70,6 +72,7 @@ def test_neither_scale_nor_seedless_repetition_changes_it():
         np.testing.assert_allclose(a, c, atol=0.02)
 
 
+@pytest.mark.slow
 def test_the_frozen_reward_is_what_the_policy_is_paid_and_it_stays():
     head = ShapedReward.random((8,), 0.95, jax.random.key(3))
     runs = stack([task(head, 0), task(head, 1)])
