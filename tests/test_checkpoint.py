@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hemma.checkpoint import load_header, load_tree, save_tree, write_atomically
+from hemma.checkpoint import load_header, load_shapes, load_tree, save_tree, write_atomically
 from hemma.errors import HemmaError
 
 
@@ -34,6 +34,12 @@ def test_every_kind_of_leaf_comes_back_bit_for_bit(tmp_path):
         same = back[name] == leaf
         assert jnp.all(same), name
     assert load_header(path) == {"fingerprint": "abc", "seconds": 1.5}
+
+
+def test_shapes_are_known_without_the_structure(tmp_path):
+    path = tmp_path / "state.safetensors"
+    save_tree(path, {"a": (jnp.zeros(()), jnp.zeros((2, 3)))}, {})
+    assert load_shapes(path) == {"['a'][0]": (), "['a'][1]": (2, 3)}
 
 
 def test_another_structure_is_refused(tmp_path):

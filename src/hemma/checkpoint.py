@@ -58,6 +58,12 @@ def load_tree(path: Path, like: Tree) -> Tree:
     return jax.tree.unflatten(jax.tree.structure(like), leaves)
 
 
+def load_shapes(path: Path) -> dict[str, tuple[int, ...]]:
+    """Paths and shapes of the leaves that ``save_tree`` saved: what a structure to load them into needs."""
+    with _opened(path) as file:
+        return {name: tuple(file.get_slice(name).get_shape()) for name in file.keys()}  # noqa: SIM118
+
+
 def load_header(path: Path) -> dict[str, Any]:
     """The header that was saved with a checkpoint."""
     with _opened(path) as file:
