@@ -15,6 +15,7 @@ from hemma.experiment.explicit import explicit_lesson, explicit_methods, sweep_c
 from hemma.experiment.identify import identify
 from hemma.experiment.keys import outside
 from hemma.experiment.lessons import imitations, lessons
+from hemma.experiment.planners import planners
 from hemma.experiment.progress import Progress, Silence
 from hemma.experiment.robustness import SEED, FaultResults, FaultRun, Trial
 from hemma.experiment.run import Job, require_different_names, require_writable
@@ -45,6 +46,11 @@ def run_faults(job: Job, progress: Progress | None = None) -> dict[str, Any]:
     plain = replace(job.experiment, data_efficiency=DataEfficiency(days=()))
     cases = [make_case(plain, traces, job.test_from) for traces in job.homes]
     require_writable(job.folder)
+    return measure_faults(job, [_trained(case, Store(job.folder, case.name, progress)) for case in cases])
+
+
+def measure_faults(job: Job, trials: Sequence[Trial]) -> dict[str, Any]:
+    """Let the methods of every home meet every fault, and those of the next home where there are several."""
     content: dict[str, Any] = {
         "schema": SCHEMA,
         "hemma": hemma.__version__,
@@ -55,15 +61,18 @@ def run_faults(job: Job, progress: Progress | None = None) -> dict[str, Any]:
         "seed_of_faults": SEED,
         "homes": {},
     }
-    for case in cases:
-        store = Store(job.folder, case.name, progress)
-        expert = Expert(case, identify(case, store))
-        found = Trial(expert, store, learned_methods(expert, store)).results()
-        content["homes"][case.name] = _home(case, found)
+    for trial, following in zip(trials, [*trials[1:], *trials[:1]], strict=True):
+        case, neighbour = trial.expert.case, None if following is trial else following
+        content["homes"][case.name] = _home(case, trial.results(neighbour))
         text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
         write_atomically(job.folder / ROBUSTNESS_FILE, (text + "\n").encode())
     write_robustness_report(job.folder)
     return content
+
+
+def _trained(case: Case, store: Store) -> Trial:
+    expert = Expert(case, identify(case, store))
+    return Trial(expert, store, learned_methods(expert, store), planners(expert, store))
 
 
 def learned_methods(expert: Expert, store: Store) -> dict[str, Trained]:

@@ -2,6 +2,7 @@
 
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -18,7 +19,7 @@ from hemma.evaluation.replay import outcome_of
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.faults import Fault, FaultSettings, faults
 from hemma.experiment.fingerprint import code, fingerprint
-from hemma.experiment.planners import Planner, planners
+from hemma.experiment.planners import Planner
 from hemma.experiment.scenes import Scene, scene
 from hemma.experiment.store import Store
 from hemma.experiment.train import Trained
@@ -27,6 +28,12 @@ from hemma.home.precision import in_double, in_numpy
 from hemma.home.sensors import SafetyLayer, WatchedStep, watched_replay
 
 STAGE = "robustness"
+FOREIGN = Fault(
+    "controllers of another home",
+    "trained, fitted and identified in the next home; the last home has those of the first",
+    lambda scene, _: scene,
+)
+"""Nothing is wrong with this home but that its controllers have never seen it."""
 SEED = 0
 """Of what goes wrong; the same for all methods, so that they can be compared."""
 
@@ -72,47 +79,59 @@ class Trial:
     store: Store
     trained: dict[str, Trained]
     """Learned methods by name."""
+    planners: tuple[Planner, ...]
+    """Those of the results table; the causal ones take part."""
 
-    def results(self) -> tuple[FaultResults, ...]:
-        """One entry a fault, nothing wrong first."""
-        settings = self.expert.case.experiment.faults
-        every = faults(settings)
-        self.store.progress.started(STAGE, len(every))
+    def results(self, neighbour: "Trial | None" = None) -> tuple[FaultResults, ...]:
+        """One entry a fault, nothing wrong first, what a ``neighbour``'s methods do in this home last."""
+        met: list[tuple[Fault, Trial]] = [(fault, self) for fault in faults(self._settings)]
+        if neighbour is not None:
+            met.append((FOREIGN, neighbour))
+        self.store.progress.started(STAGE, len(met))
         found = []
-        for number, fault in enumerate(every):
-            found.append(self._kept(fault, settings))
+        for number, (fault, actor) in enumerate(met):
+            found.append(self._kept(fault, actor))
             self.store.progress.advanced(STAGE, number + 1, fault.name)
-        self.store.progress.finished(STAGE, f"{len(every)} faults")
+        self.store.progress.finished(STAGE, f"{len(met)} faults")
         return tuple(found)
 
-    def _kept(self, fault: Fault, settings: FaultSettings) -> FaultResults:
-        marks = {name: one.mark for name, one in self.trained.items()}
+    @property
+    def _settings(self) -> FaultSettings:
+        return self.expert.case.experiment.faults
+
+    @property
+    def _marks(self) -> list[Any]:
+        """Fingerprints of all that the controllers depend on."""
+        learned = sorted((name, one.mark) for name, one in self.trained.items())
+        planned = [(planner.method, planner.facts) for planner in self.planners]
+        return [self.expert.mark, learned, planned, self.expert.case.experiment.forecast_horizon]
+
+    def _kept(self, fault: Fault, actor: "Trial") -> FaultResults:
         layers = code("evaluation", "baselines", "expert", "home", "experiment")
-        mark = fingerprint(STAGE, layers, self.expert.mark, settings, fault.name, sorted(marks.items()))
+        mark = fingerprint(STAGE, layers, self._marks, self._settings, fault.name, actor._marks)
         product = f"{STAGE}-{fault.name.replace(' ', '-')}"
         content = self.store.kept(product, mark)
         if content is None:
-            content = asdict(self._met(fault, settings))
+            case = self.expert.case
+            now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
+            met = FaultResults(fault.name, fault.meaning, now.repaired, actor.runs(now))
+            content = asdict(met)
             self.store.keep(product, mark, [], content)
         return FaultResults(**{**content, "runs": tuple(FaultRun(**run) for run in content["runs"])})
 
-    def _met(self, fault: Fault, settings: FaultSettings) -> FaultResults:
-        case = self.expert.case
-        now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
+    def runs(self, now: Scene) -> tuple[FaultRun, ...]:
+        """What the methods that learned in this home do in a scene, be it of another one."""
         problem = optimum_problem(now.home, now.exogenous, disturbances=now.readings.disturbance)
         runs: list[FaultRun] = []
         for method, controller in self._plain.items():
             runs.append(self._watched(method, None, controller, now, problem))
-        runs += [self._planned(planner, now, problem) for planner in self._planners]
+        causal = [planner for planner in self.planners if planner.is_causal]
+        runs += [self._planned(planner, now, problem) for planner in causal]
         for method, one in self.trained.items():
-            for seed in range(min(one.controllers.scaler.centre.shape[0], settings.runs)):
+            for seed in range(min(one.controllers.scaler.centre.shape[0], self._settings.runs)):
                 controller = jax.tree.map(lambda x, seed=seed: x[seed], one.controllers)
                 runs.append(self._watched(method, seed, controller, now, problem))
-        return FaultResults(fault.name, fault.meaning, now.repaired, tuple(runs))
-
-    @cached_property
-    def _planners(self) -> list[Planner]:
-        return [planner for planner in planners(self.expert, self.store) if planner.is_causal]
+        return tuple(runs)
 
     @cached_property
     def _plain(self) -> dict[str, Controller]:
@@ -126,7 +145,7 @@ class Trial:
     def _watched(
         self, method: str, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
     ) -> FaultRun:
-        safety = SafetyLayer(self.expert.planning_home, self.expert.case.experiment.faults.margin)
+        safety = SafetyLayer(self.expert.planning_home, self._settings.margin)
         with jax.enable_x64(True):
             inputs = in_double((now.home, now.exogenous, controller, now.readings, safety, jax.random.key(0)))
             watched = in_numpy(_replayed(*inputs))
