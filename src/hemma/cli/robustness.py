@@ -1,7 +1,9 @@
 """``hemma robustness``: what is left of each method when things go wrong."""
 
+import shlex
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -24,6 +26,14 @@ from hemma.cli.experiment import (
 from hemma.cli.homes import chosen_homes
 
 Every = Annotated[bool, typer.Option("--every", help="Every method in the table that is printed.")]
+Filled = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="[RESULTS]",
+        help="A results folder: measure what it holds, with its own settings and homes, and train nothing.",
+        show_default=False,
+    ),
+]
 PRINTED = ("HA-1", "PPO", "default", "MPC forecast", "thresholds", "Rule")
 """What a terminal has room for; the file has all."""
 
@@ -34,6 +44,7 @@ def register(app: typer.Typer) -> None:
 
 
 def robustness(  # noqa: PLR0913
+    folder: Filled = None,
     traces: Traces = None,
     home: Home = None,
     homes: Homes = None,
@@ -46,18 +57,38 @@ def robustness(  # noqa: PLR0913
     json: Json = False,
 ) -> None:
     """Measure all methods again under faults: of sensors, building, battery, prices, household."""
+    request = Request(traces, chosen_homes(home, homes), test_from, settings, out, seeds, quick)
     with going_on_later():
-        from hemma.experiment.fault_run import run_faults
-
-        request = Request(traces, chosen_homes(home, homes), test_from, settings, out, seeds, quick)
-        job = job_of(request)
-        keep_compiled_code()
-        with show_progress() as progress:
-            content = run_faults(job, progress)
+        content = _trained(request) if folder is None else _as_it_is(folder, request)
     if json:
         print_json(content)
     else:
-        _print_table(out, every)
+        _print_table(out if folder is None else folder, every)
+
+
+def _trained(request: Request) -> Any:
+    """What was asked for; trains what the folder does not hold yet."""
+    from hemma.experiment.fault_run import run_faults
+
+    job = job_of(request)
+    keep_compiled_code()
+    with show_progress() as progress:
+        return run_faults(job, progress)
+
+
+def _as_it_is(folder: Path, request: Request) -> Any:
+    """What the folder holds."""
+    from hemma.errors import HemmaError
+    from hemma.experiment.fault_run import run_stored_faults
+
+    if request != Request(request.traces, (), None, None, OUT, None, False):
+        raise HemmaError(
+            f"expected a results folder or options, got {folder} and options; a folder brings its own homes, "
+            "settings and seeds: leave out all but --traces, or name the folder with --out to train in it"
+        )
+    keep_compiled_code()
+    with show_progress() as progress:
+        return run_stored_faults(folder, request.traces, shlex.join(["hemma", *sys.argv[1:]]), progress)
 
 
 def _print_table(folder: Path, every: bool) -> None:
@@ -70,7 +101,8 @@ def _print_table(folder: Path, every: bool) -> None:
 
     found = load_robustness(folder)
     methods = [name for name in shown(found) if every or name in PRINTED]
-    table = Table("Fault", title="Share of savings at equal comfort, mean deviation in °C")
+    table = Table(title="Share of savings at equal comfort, mean deviation in °C", pad_edge=False)
+    table.add_column("Fault", min_width=len("controllers"))
     for name in methods:
         table.add_column(name, justify="right")
     for fault in found.faults:

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from pathlib import Path
 from typing import Any
 
 import hemma
@@ -21,7 +22,9 @@ from hemma.experiment.robustness import SEED, FaultResults, FaultRun, Trial
 from hemma.experiment.run import Job, require_different_names, require_writable
 from hemma.experiment.settings import DataEfficiency
 from hemma.experiment.store import Store
+from hemma.experiment.stored import stored_job, stored_trial, tell_what_differs
 from hemma.experiment.train import Trained, train_lesson, train_lessons
+from hemma.report.results import load_results
 from hemma.report.robustness import write_robustness_report
 from hemma.report.robustness_results import ROBUSTNESS_FILE
 
@@ -47,6 +50,22 @@ def run_faults(job: Job, progress: Progress | None = None) -> dict[str, Any]:
     cases = [make_case(plain, traces, job.test_from) for traces in job.homes]
     require_writable(job.folder)
     return measure_faults(job, [_trained(case, Store(job.folder, case.name, progress)) for case in cases])
+
+
+def run_stored_faults(
+    folder: Path, traces: Path | None, command: str, progress: Progress | None = None
+) -> dict[str, Any]:
+    """The homes and methods that a folder holds, nothing trained; the content of ``robustness.json``.
+
+    Raises ``HemmaError`` where the folder has nothing to measure.
+    """
+    progress = Silence() if progress is None else progress
+    job = stored_job(folder, traces, command)
+    require_writable(folder)
+    cases = [make_case(job.experiment, home, job.test_from) for home in job.homes]
+    content = measure_faults(job, [stored_trial(case, Store(folder, case.name, progress)) for case in cases])
+    tell_what_differs(load_results(folder), content, progress)
+    return content
 
 
 def measure_faults(job: Job, trials: Sequence[Trial]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import jax
 import numpy as np
 
 from hemma.checkpoint import write_atomically
+from hemma.errors import HemmaError
 from hemma.experiment.case import Case
 from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.results import FreeRunError, Identified
@@ -48,6 +49,18 @@ def identify(case: Case, store: Store) -> Identification:
         found = _fit(case, store, mark)
         store.progress.finished(STAGE, _message(found))
     return Identification(load_model(store.folder / store.model(NETWORK)), found, mark)
+
+
+def identified(store: Store) -> Identification:
+    """The product of an earlier run as it lies in the folder, whatever settings or version made it."""
+    mark = store.mark_of(PRODUCT)
+    content = None if mark is None else store.kept(PRODUCT, mark)
+    if mark is None or content is None:
+        raise HemmaError(
+            f"{store.folder / store.model(NETWORK)}: expected the network that `hemma reproduce` identifies, "
+            "it is missing or was changed. Run `hemma reproduce` into this folder"
+        )
+    return Identification(load_model(store.folder / store.model(NETWORK)), _found(content, store), mark)
 
 
 def _fit(case: Case, store: Store, mark: str) -> Identified:

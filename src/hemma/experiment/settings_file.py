@@ -26,6 +26,11 @@ def read_settings(path: Path) -> Experiment:
         raise HemmaError(f"{path}: expected a settings file (YAML), cannot read it: {error}") from error
     except yaml.YAMLError as error:
         raise HemmaError(f"{path}: expected YAML, for example `seeds: 3`: {error}") from error
+    return experiment_of(given, path)
+
+
+def experiment_of(given: Any, path: Path) -> Experiment:
+    """The experiment that keys and values, found in the file ``path``, describe; see ``read_settings``."""
     content = _merged(outside(Experiment()), {} if given is None else given)
     try:
         return inside(Experiment, section(Experiment).model_validate(content))

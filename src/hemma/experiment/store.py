@@ -48,14 +48,24 @@ class Store:
 
     def kept(self, product: str, mark: str) -> dict[str, Any] | None:
         """The content of a card with this fingerprint; None if there is none or a file of it was changed."""
+        card = self._read(product)
+        return card["content"] if card is not None and card["fingerprint"] == mark else None
+
+    def mark_of(self, product: str) -> str | None:
+        """The fingerprint of a product, whatever made it; None if there is none or a file was changed."""
+        card = self._read(product)
+        return None if card is None else card["fingerprint"]
+
+    def _read(self, product: str) -> dict[str, Any] | None:
+        """A card of which all files are as they were written."""
         try:
             card = json.loads(self._card(product).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
-        if not isinstance(card, dict) or card.get("fingerprint") != mark:
+        if not isinstance(card, dict) or "fingerprint" not in card:
             return None
         unchanged = all(_digest(self.folder / name) == digest for name, digest in card["files"].items())
-        return card["content"] if unchanged else None
+        return card if unchanged else None
 
     def _card(self, product: str) -> Path:
         return self.folder / self.model(f"{product}.json")
