@@ -112,6 +112,7 @@ def test_gradient_penalty_is_zero_for_a_flat_reward_and_grows_with_slope():
     assert float(gradient_penalty(steep, *batches, jax.random.key(0))) > 10.0
 
 
+@pytest.mark.slow
 def test_padding_is_never_read():
     """A run of 3 days beside one of 5 days trains the same whatever lies behind its third day."""
     runs = stack([task(seed=0, days=3), task(seed=1, days=5)])

@@ -185,6 +185,7 @@ def short_and_long():
     return stack([ruled_task(price_rule, days=3), ruled_task(price_rule, seed=1, days=5)])
 
 
+@pytest.mark.slow
 def test_padding_is_never_read():
     """A run of 3 days beside one of 5 days trains the same whatever lies behind its third day."""
     learner, runs = linear_maxent(SMALL, PPO), short_and_long()

@@ -141,6 +141,7 @@ def test_settings_without_meaning_are_refused(change, message):
         dataclasses.replace(LEARNER.settings, **change)
 
 
+@pytest.mark.slow
 def test_one_step_world_without_a_price_of_comfort_the_hvac_is_off():
     """The night's price is a tenth of the day's, and so is what it tells: it takes twice the rounds."""
     longer = DDPG(dataclasses.replace(LEARNER.settings, iterations=300))

@@ -20,9 +20,11 @@ def filled(tree, axes):
     return jax.tree.map(lambda x: jnp.asarray(rng.normal(size=(*axes, *np.shape(x))), float), tree)
 
 
-@pytest.mark.parametrize(("axes", "sizes"), [((2,), ()), ((2,), (7, 5)), ((2, 3), (4,))])
-def test_stored_controllers_come_back_bit_for_bit(tmp_path, axes, sizes):
-    policy = filled(GaussianPolicy(sizes, jax.random.key(0)), axes)
+@pytest.mark.parametrize(
+    ("axes", "sizes", "features"), [((2,), (), 8), ((2,), (7, 5), 20), ((2, 3), (4,), 8)]
+)
+def test_stored_controllers_come_back_bit_for_bit(tmp_path, axes, sizes, features):
+    policy = filled(GaussianPolicy(sizes, jax.random.key(0), features), axes)
     kept = PolicyController(
         policy=CommitteePolicy(policy) if len(axes) > 1 else policy,
         scaler=filled(StateScaler(jnp.zeros(6), jnp.ones(6)), axes[:1]),

@@ -33,7 +33,8 @@ def environment(slots=240, seed=0):
     columns = [exogenous.pv_generation, exogenous.load, rng.uniform(0.6, 6, slots)]
     columns += [exogenous.outdoor_temperature, rng.uniform(19, 25, slots), exogenous.buying_price, hour]
     states = np.stack(columns, axis=1)
-    return Environment(Home(), Home(), exogenous, jnp.asarray(slots), fit_scaler(states))
+    nothing = jnp.zeros((slots, 0))
+    return Environment(Home(), Home(), exogenous, jnp.asarray(slots), fit_scaler(states), nothing)
 
 
 @pytest.mark.parametrize("samples", [1, 2, 5, 64, 3072])
@@ -113,7 +114,7 @@ def test_a_rollout_replays_consecutive_slots_of_the_traces():
 def test_padding_behind_the_available_slots_is_never_replayed():
     world = environment()
     poisoned = jax.tree.map(lambda x: x.at[100:].set(jnp.nan), world.exogenous)
-    world = Environment(world.home, world.home, poisoned, jnp.asarray(100), world.scaler)
+    world = Environment(world.home, world.home, poisoned, jnp.asarray(100), world.scaler, world.context)
     learner = ppo.start(SETTINGS, jax.random.key(0))
     rollout = collect(world, learner.networks.policy, DEVIATION, (24, 256), jax.random.key(3))
     assert bool(jnp.all(jnp.isfinite(rollout.transitions.next_features)))

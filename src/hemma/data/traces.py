@@ -5,7 +5,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hemma.errors import HemmaError
 from hemma.types import Exogenous
@@ -87,6 +87,10 @@ class Traces:
 
         utc = self.time.tz_convert("UTC").tz_localize(None)
         return utc + pd.to_timedelta(np.round(self.offsets() * 3600), unit="s")
+
+    def weekdays(self) -> Int[np.ndarray, "slots"]:
+        """Day of the week of each slot by the local wall clock, Monday 0."""
+        return np.asarray(self.wall_clock().day_of_week, int)
 
     def time_stamps(self) -> list[str]:
         """Start of each slot, ISO 8601 with the offset from UTC: ``2021-08-01T00:00:00-06:00``."""

@@ -11,16 +11,17 @@ from hemma.evaluation import evaluate_stacked
 from hemma.experiment.case import Case
 from hemma.experiment.demonstrate import Expert
 from hemma.experiment.fingerprint import code, fingerprint
+from hemma.experiment.pupils import PAID, PUPILS
 from hemma.experiment.settings import Experiment
+from hemma.experiment.sight import Sight, informed, sight_of
 from hemma.experiment.store import Store
 from hemma.experiment.train import Lesson, Trained, train_lesson
 from hemma.rl.ddpg import DDPG
 from hemma.rl.explicit import ExplicitLearning, choose_comfort_price, comfort_prices
+from hemma.rl.scaling import NOTHING
 from hemma.rl.task import explicit_task, stack
-from hemma.types import Exogenous
 
 STAGE = "comfort price"
-METHODS = ("PPO", "DDPG")
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class Sweep:
     """A method trained with several beta_T on the first part of the training period, judged on the rest."""
 
     method: str
-    """One of ``METHODS``."""
+    """Its name, as in ``PUPILS``."""
     lesson: Lesson
     trained: Trained
     prices: tuple[float, ...]
@@ -39,7 +40,8 @@ class Sweep:
 
 def explicit_methods(experiment: Experiment) -> tuple[str, ...]:
     """Those of this stage that are asked for."""
-    return tuple(method for method in METHODS if method in experiment.learned)
+    asked = [PUPILS[name] for name in experiment.learned]
+    return tuple(pupil.name for method in PAID for pupil in asked if pupil.method == method)
 
 
 def sweep_comfort_price(expert: Expert, store: Store, method: str) -> Sweep:
@@ -54,22 +56,31 @@ def sweep_comfort_price(expert: Expert, store: Store, method: str) -> Sweep:
     prices = [float(value) for value in values for _ in range(settings.seeds)]
     seeds = [seed for _ in values for seed in range(settings.seeds)]
     pairs = zip(prices, seeds, strict=True)
-    planning_home, home = expert.planning_home, case.home
-    task = stack([explicit_task(planning_home, home, seen, price, seed) for price, seed in pairs])
-    basis = fingerprint(STAGE, case.mark, expert.identification.mark, settings)
-    lesson = Lesson(f"{method}-sweep", _algorithm(case.experiment, method), task, basis)
+    planning_home, home, sight = expert.planning_home, case.home, sight_of(PUPILS[method], expert, store)
+    context = sight.learning(_seen_days(case), _seen_days(case))
+    task = stack([explicit_task(planning_home, home, seen, price, seed, context) for price, seed in pairs])
+    basis = _basis(sight, STAGE, case.mark, expert.identification.mark, settings)
+    lesson = Lesson(f"{method}-sweep", _algorithm(case.experiment, method), task, basis, sight)
     trained = train_lesson(lesson, store)
     chosen = _chosen(case, store, lesson, trained, np.asarray(prices))
     return Sweep(method, lesson, trained, tuple(prices), chosen)
 
 
-def explicit_lesson(expert: Expert, method: str, comfort_price: float) -> Lesson:
+def explicit_lesson(expert: Expert, store: Store, method: str, comfort_price: float) -> Lesson:
     """``method`` on the whole training period."""
     case, planning_home = expert.case, expert.planning_home
     days, seeds = case.first_days(case.training_days), range(case.experiment.seeds)
-    task = stack([explicit_task(planning_home, case.home, days, comfort_price, seed) for seed in seeds])
-    basis = fingerprint("explicit", case.mark, expert.identification.mark, comfort_price)
-    return Lesson(method, _algorithm(case.experiment, method), task, basis)
+    sight = sight_of(PUPILS[method], expert, store)
+    context = sight.learning(case.training_days)
+    task = stack(
+        [explicit_task(planning_home, case.home, days, comfort_price, seed, context) for seed in seeds]
+    )
+    basis = _basis(sight, "explicit", case.mark, expert.identification.mark, comfort_price)
+    return Lesson(method, _algorithm(case.experiment, method), task, basis, sight)
+
+
+def _basis(sight: Sight, stage: str, *facts: object) -> str:
+    return fingerprint(stage, *facts, *([sight.mark] if sight.mark else []))
 
 
 def _seen_days(case: Case) -> int:
@@ -84,7 +95,9 @@ def _seen_days(case: Case) -> int:
 
 
 def _algorithm(experiment: Experiment, method: str) -> ExplicitLearning | DDPG:
-    return ExplicitLearning(experiment.explicit) if method == "PPO" else DDPG(experiment.ddpg)
+    if PUPILS[method].method == "PPO":
+        return ExplicitLearning(experiment.explicit)
+    return DDPG(experiment.ddpg)
 
 
 def _chosen(case: Case, store: Store, lesson: Lesson, trained: Trained, prices: np.ndarray) -> float:
@@ -95,8 +108,7 @@ def _chosen(case: Case, store: Store, lesson: Lesson, trained: Trained, prices: 
     if content is not None:
         return content["chosen"]
     settings = case.experiment.comfort_price
-    held_out = case.training.window(case.first_days(_seen_days(case)).slots, case.training.slots)
-    regrets, deviations = _judged(case, trained, held_out)
+    regrets, deviations = _judged(case, lesson, trained)
     values = np.asarray(list(dict.fromkeys(prices.tolist())))
     shape = (len(values), settings.seeds)
     mean_regrets, mean_deviations = (x.reshape(shape).mean(axis=1) for x in (regrets, deviations))
@@ -110,12 +122,15 @@ def _chosen(case: Case, store: Store, lesson: Lesson, trained: Trained, prices: 
     return chosen
 
 
-def _judged(case: Case, trained: Trained, days: Exogenous) -> tuple[np.ndarray, np.ndarray]:
-    """Regret at equal comfort [currency] and mean deviation [degC] of each run on ``days``."""
+def _judged(case: Case, lesson: Lesson, trained: Trained) -> tuple[np.ndarray, np.ndarray]:
+    """Regret at equal comfort [currency] and mean deviation [degC] of each run on the days held out."""
+    first = case.first_days(_seen_days(case)).slots
+    days, sight = case.training.window(first, case.training.slots), lesson.sight
+    context = NOTHING if sight is None else sight.held_out(first)
     problem = optimum_problem(case.home, days)
     runs = trained.controllers.scaler.centre.shape[0]
     keys = jax.random.split(jax.random.key(0), runs)
-    outcomes = evaluate_stacked(case.home, days, trained.controllers, keys)
+    outcomes = evaluate_stacked(case.home, days, informed(trained.controllers, context), keys)
     regrets = [
         float(np.sum(outcome.cost)) - problem.solve(outcome.total_deviation).cost for outcome in outcomes
     ]

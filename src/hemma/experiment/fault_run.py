@@ -100,13 +100,13 @@ def learned_methods(expert: Expert, store: Store) -> dict[str, Trained]:
     wanted = imitations(case.experiment, case.training_days)
     made = lessons(case, expert, store, wanted)
     trained: dict[str, Trained] = {}
-    for algorithm in dict.fromkeys(lesson.algorithm for lesson in made):
-        same = [lesson for lesson in made if lesson.algorithm == algorithm]
+    for kind in dict.fromkeys(lesson.kind for lesson in made):
+        same = [lesson for lesson in made if lesson.kind == kind]
         done = train_lessons(same, store)
         trained |= {lesson.label: one for lesson, one in zip(same, done, strict=True)}
     for method in explicit_methods(case.experiment):
         sweep = sweep_comfort_price(expert, store, method)
-        trained[method] = train_lesson(explicit_lesson(expert, method, sweep.chosen), store)
+        trained[method] = train_lesson(explicit_lesson(expert, store, method, sweep.chosen), store)
     return trained
 
 

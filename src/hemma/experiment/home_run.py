@@ -81,11 +81,11 @@ class HomeRun:
         return [Learned(one.method, lesson, one.days) for one, lesson in zip(wanted, made, strict=True)]
 
     def _train(self, imitating: Sequence[Learned], bands: Bands | None) -> dict[str, Trained]:
-        """The controllers of each lesson by its label; lessons of one algorithm are trained in one call."""
+        """The controllers of each lesson by its label; lessons of one kind are trained in one call."""
         waiting = [learned.lesson for learned in imitating] + ([] if bands is None else [bands.lesson])
         trained: dict[str, Trained] = {}
-        for algorithm in dict.fromkeys(lesson.algorithm for lesson in waiting):
-            same = [lesson for lesson in waiting if lesson.algorithm == algorithm]
+        for kind in dict.fromkeys(lesson.kind for lesson in waiting):
+            same = [lesson for lesson in waiting if lesson.kind == kind]
             made = train_lessons(same, self.store)
             trained |= {lesson.label: one for lesson, one in zip(same, made, strict=True)}
         return trained
@@ -95,7 +95,7 @@ class HomeRun:
         paid = []
         for method in explicit_methods(self.case.experiment):
             sweep = sweep_comfort_price(expert, self.store, method)
-            lesson = explicit_lesson(expert, method, sweep.chosen)
+            lesson = explicit_lesson(expert, self.store, method, sweep.chosen)
             paid.append((sweep, Learned(method, lesson)))
         return paid
 

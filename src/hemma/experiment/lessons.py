@@ -6,10 +6,14 @@ from itertools import accumulate
 
 import jax
 
+from hemma.baselines.observations import PAPER
 from hemma.experiment.case import Case
+from hemma.experiment.causal import causal_demonstration
 from hemma.experiment.demonstrate import Demonstration, Expert, demonstration
 from hemma.experiment.fingerprint import fingerprint
+from hemma.experiment.pupils import PUPILS, Pupil
 from hemma.experiment.settings import Experiment
+from hemma.experiment.sight import Sight, sight_of
 from hemma.experiment.store import Store
 from hemma.experiment.train import Lesson
 from hemma.irl.airl import AdversarialImitation
@@ -19,11 +23,16 @@ from hemma.irl.reward import AbstractHead, ImitationScore, ShapedReward
 from hemma.rl import task
 from hemma.rl.committee import Committee
 from hemma.rl.improvement import Proximal
+from hemma.rl.scaling import NOTHING, Context
 from hemma.rl.task import Task, make_task
 from hemma.rl.training import Algorithm
 
 ANY_LENGTH = "AIRL"
 """The method of HA-1 and HA-2 with demonstrations of another length."""
+
+
+PLAIN = PUPILS["HA-1"]
+"""Sees the paper's state and is taught in hindsight."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +46,8 @@ class Imitation:
     seeds: int
     label: str
     """Of its files, and of the stage."""
+    pupil: Pupil = PLAIN
+    """What it sees, and who teaches it."""
 
 
 def airl(experiment: Experiment, head: type[AbstractHead] = ShapedReward) -> Committee:
@@ -62,12 +73,14 @@ def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, .
         ("MaxEnt IRL neural", neural_maxent(experiment.maxent, by_ppo), long),
         ("BC", BehaviourCloning(experiment.cloning), short),
     )
+    asked = [PUPILS[name] for name in experiment.learned]
     wanted = [
-        Imitation(method, algorithm, days, experiment.seeds, method)
+        Imitation(pupil.name, algorithm, days, experiment.seeds, pupil.name, pupil)
         for method, algorithm, days in known
-        if method in experiment.learned
+        for pupil in asked
+        if pupil.method == method
     ]
-    done = {one.days for one in wanted if one.algorithm == ours}
+    done = {one.days for one in wanted if one.algorithm == ours and one.pupil.is_plain}
     efficiency = experiment.data_efficiency
     others = [days for days in efficiency.days if days not in done and days <= training_days]
     lengths = [
@@ -79,30 +92,50 @@ def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, .
 def lessons(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation]) -> tuple[Lesson, ...]:
     """The lesson of each: its expert demonstrates, and its task sees those days and nothing else.
 
-    All tasks are padded to one length, so that those with as many runs share compiled code.
+    Tasks that see as much are padded to one length, so that those with as many runs share compiled code.
     """
-    if not wanted:
-        return ()
-    shown = {days: demonstration(store, expert, days) for days in dict.fromkeys(one.days for one in wanted)}
-    runs = [(shown[one.days], seed) for one in wanted for seed in range(one.seeds)]
-    together = task.stack([demonstrated_task(expert, d, seed) for d, seed in runs])
+    made: dict[str, Lesson] = {}
+    for model in dict.fromkeys(one.pupil.model for one in wanted):
+        made |= _alike(case, expert, store, [one for one in wanted if one.pupil.model == model])
+    return tuple(made[one.label] for one in wanted)
+
+
+def _alike(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation]) -> dict[str, Lesson]:
+    """The lessons, by label, of pupils that see the same."""
+    sights = {one.label: sight_of(one.pupil, expert, store) for one in wanted}
+    shown = {one.label: _shown(one, expert, store, sights[one.label]) for one in wanted}
+    contexts = {one.days: sights[one.label].learning(one.days) for one in wanted}
+    together = task.stack(
+        [
+            demonstrated_task(expert, shown[one.label], seed, contexts[one.days])
+            for one in wanted
+            for seed in range(one.seeds)
+        ]
+    )
     ends = list(accumulate(one.seeds for one in wanted))
-    return tuple(
-        Lesson(
+    return {
+        one.label: Lesson(
             label=one.label,
             algorithm=one.algorithm,
             task=jax.tree.map(lambda x, part=slice(*part): x[part], together),
-            basis=_basis(case, shown[one.days]),
+            basis=_basis(case, shown[one.label], sights[one.label]),
+            sight=None if one.pupil.model == PAPER else sights[one.label],
         )
         for one, part in zip(wanted, zip([0, *ends], ends, strict=False), strict=True)
-    )
+    }
 
 
-def demonstrated_task(expert: Expert, shown: Demonstration, seed: int) -> Task:
+def _shown(one: Imitation, expert: Expert, store: Store, sight: Sight) -> Demonstration:
+    if one.pupil.is_causal:
+        return causal_demonstration(store, expert, sight, one.days)
+    return demonstration(store, expert, one.days)
+
+
+def demonstrated_task(expert: Expert, shown: Demonstration, seed: int, context: Context = NOTHING) -> Task:
     """The task of one run that learns from what ``expert`` showed, on the days on which it did."""
-    case = expert.case
-    return make_task(expert.planning_home, case.home, case.first_days(shown.days), shown.demonstrated, seed)
+    case, days = expert.case, expert.case.first_days(shown.days)
+    return make_task(expert.planning_home, case.home, days, shown.demonstrated, seed, context)
 
 
-def _basis(case: Case, shown: Demonstration) -> str:
-    return fingerprint("lesson", case.home, shown.mark)
+def _basis(case: Case, shown: Demonstration, sight: Sight) -> str:
+    return fingerprint("lesson", case.home, shown.mark, *([sight.mark, case.mark] if sight.mark else []))

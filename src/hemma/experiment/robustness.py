@@ -20,12 +20,15 @@ from hemma.experiment.demonstrate import Expert
 from hemma.experiment.faults import Fault, FaultSettings, faults
 from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.planners import Planner
+from hemma.experiment.pupils import PUPILS
 from hemma.experiment.scenes import Scene, scene
+from hemma.experiment.sight import informed, sight_of
 from hemma.experiment.store import Store
 from hemma.experiment.train import Trained
 from hemma.home import Controller
 from hemma.home.precision import in_double, in_numpy
 from hemma.home.sensors import SafetyLayer, WatchedStep, watched_replay
+from hemma.rl.scaling import Context
 
 STAGE = "robustness"
 FOREIGN = Fault(
@@ -128,10 +131,16 @@ class Trial:
         causal = [planner for planner in self.planners if planner.is_causal]
         runs += [self._planned(planner, now, problem) for planner in causal]
         for method, one in self.trained.items():
+            controllers = informed(one.controllers, self._seen(method, now))
             for seed in range(min(one.controllers.scaler.centre.shape[0], self._settings.runs)):
-                controller = jax.tree.map(lambda x, seed=seed: x[seed], one.controllers)
+                controller = jax.tree.map(lambda x, seed=seed: x[seed], controllers)
                 runs.append(self._watched(method, seed, controller, now, problem))
         return tuple(runs)
+
+    def _seen(self, method: str, now: Scene) -> Context:
+        """What a learned method sees besides the paper's state, as it is read."""
+        case, sight = self.expert.case, sight_of(PUPILS[method], self.expert, self.store)
+        return sight.over(case.training, now.readings.exogenous, case.parts.test.weekdays())
 
     @cached_property
     def _plain(self) -> dict[str, Controller]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from hemma.baselines.shape_forecast import ShapeForecast
 from hemma.data import Tariff
 from hemma.experiment.faults import FaultSettings
+from hemma.experiment.pupils import GRAMMAR, LEARNED, PUPILS
 from hemma.expert.hierarchy import HierarchySettings
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Home, Hvac
 from hemma.home.checks import require
@@ -16,8 +17,6 @@ from hemma.irl.maxent import MaxEntSettings
 from hemma.rl.ddpg import DDPGSettings
 from hemma.rl.explicit import ExplicitSettings
 from hemma.rl.ppo import PPOSettings
-
-LEARNED = ("HA-1", "HA-2", "GAIL", "MaxEnt IRL", "MaxEnt IRL neural", "BC", "PPO", "DDPG")
 
 
 @dataclass(frozen=True)
@@ -141,7 +140,8 @@ class Experiment:
     forecast_horizon: float = 36.0
     """How far ahead the rolling planners (MPC) look [h]."""
     learned: tuple[str, ...] = LEARNED
-    """Learned methods to run, of HA-1, HA-2, GAIL, MaxEnt IRL, MaxEnt IRL neural, BC, PPO, DDPG."""
+    """Learned methods to run: HA-1, HA-2, GAIL, MaxEnt IRL, MaxEnt IRL neural, BC, PPO, DDPG, and each with
+    more to see, such as `HA-1 past` or `PPO published`; docs/observations.md has all names."""
     seeds: int = 3
     """Runs of each learned method, with the seeds 0, 1, ..."""
     demonstration_days: int = 15
@@ -155,8 +155,9 @@ class Experiment:
         require("seeds", self.seeds >= 1, "at least 1", self.seeds)
         for name in ("demonstration_days", "long_demonstration_days"):
             require(name, getattr(self, name) >= 1, "at least 1", getattr(self, name))
-        unknown = [method for method in self.learned if method not in LEARNED]
-        require("learned", not unknown, f"some of {', '.join(LEARNED)}", ", ".join(unknown))
+        unknown = [name for name in self.learned if name not in PUPILS]
+        require("learned", not unknown, f"names that are {GRAMMAR}", ", ".join(unknown))
+        require("learned", len(set(self.learned)) == len(self.learned), "different methods", self.learned)
         require("forecast_horizon", self.forecast_horizon > 0, "hours > 0", self.forecast_horizon)
         require("pv", self.pv_scale >= 0, "scale >= 0", self.pv_scale)
 

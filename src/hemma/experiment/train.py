@@ -1,7 +1,7 @@
 """Stage: train a learner, all its runs side by side, saved while under way."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from pathlib import Path
@@ -10,11 +10,13 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
+from hemma.baselines.observations import PAPER
 from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.experiment.curves import write_curves
 from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.rewards import keep_rewards
+from hemma.experiment.sight import Sight
 from hemma.experiment.store import Store
 from hemma.rl.policy import PolicyController
 from hemma.rl.task import Task, side_by_side
@@ -35,11 +37,18 @@ class Lesson:
     """One run a seed, stacked."""
     basis: str
     """Fingerprint of all that the task was made from."""
+    sight: Sight | None = None
+    """What the policies see besides the paper's state, if anything."""
 
     @property
     def runs(self) -> int:
         """How many runs there are."""
         return self.task.seed.shape[0]
+
+    @property
+    def kind(self) -> Hashable:
+        """Lessons of one kind can be trained in one call: the same algorithm, as many features."""
+        return self.algorithm, self.task.environment.width
 
     @property
     def mark(self) -> str:
@@ -131,7 +140,7 @@ class _Clock:
 
 
 def train_lessons(lessons: Sequence[Lesson], store: Store) -> tuple[Trained, ...]:
-    """The controllers of lessons of one algorithm: those of earlier calls, and the rest trained in one call.
+    """The controllers of lessons of one kind: those of earlier calls, and the rest trained in one call.
 
     A wide batch costs less a run, and is compiled once. The learning curves are written beside the
     controllers.
@@ -178,7 +187,8 @@ def _keep(lesson: Lesson, training: Training, seconds: float, store: Store) -> N
     home = jax.tree.map(lambda x: x[0], lesson.task.environment.home)
     write_curves(store.folder, curves, training.curve, home)
     made = controllers(training, lesson.task, lesson.algorithm)
-    save_tree(store.folder / file, made, {"fingerprint": lesson.mark})
+    seen = PAPER.name if lesson.sight is None else lesson.sight.model.name
+    save_tree(store.folder / file, made, {"fingerprint": lesson.mark, "observation_model": seen})
     rewards = keep_rewards(training, lesson.task, lesson.label, store)
     store.keep(lesson.label, lesson.mark, [file, *rewards, *curves], {"seconds": seconds})
 

@@ -125,11 +125,11 @@ class AdversarialImitation:
 
     def start(self, task: Task[Expert], key: Array) -> TrainingState:
         """Initial policy pi_0 and reward r_0; the replay is filled with transitions of pi_0."""
-        settings = self.settings
+        settings, width = self.settings, task.environment.width
         learner_key, head_key, replay_key, key = jax.random.split(key, 4)
-        learner = self.improvement.start(learner_key)
+        learner = self.improvement.start(learner_key, width)
         policy = self.improvement.policy(learner)
-        head = self.head.random(settings.hidden, self.improvement.discount, head_key)
+        head = self.head.random(settings.hidden, self.improvement.discount, head_key, width)
         effort = Effort(self._deviation(jnp.zeros(())))
 
         def kept(key: Array) -> Transitions:

@@ -93,7 +93,7 @@ class BehaviourCloning:
     def start(self, task: Task[Expert], key: Array) -> CloningState:
         """A random policy."""
         policy_key, key = jax.random.split(key)
-        policy = GaussianPolicy(self.settings.hidden, policy_key)
+        policy = GaussianPolicy(self.settings.hidden, policy_key, task.environment.width)
         nothing = jnp.full(ACTIONS, jnp.inf)
         return CloningState(policy, begin(self._method(), policy), policy, nothing, jnp.zeros((), int), key)
 

@@ -13,6 +13,7 @@ from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.irl.reward import ShapedReward
 from hemma.rl.environment import Transitions
+from hemma.rl.policy import FEATURES
 from hemma.rl.scaling import StateScaler
 from hemma.types import Array
 
@@ -60,7 +61,7 @@ class LearnedReward(eqx.Module):
         fractions: Float[Array, "*batch actions"],
         next_states: Float[Array, "*batch 7"],
     ) -> Transitions:
-        """(s, a, s') of states in their units as the head reads them."""
+        """(s, a, s') of states in their units as the head reads them, where it sees the paper's state."""
         return Transitions(self.scaler(states), fractions, self.scaler(next_states))
 
 
@@ -71,6 +72,7 @@ def save_rewards(path: Path, rewards: LearnedReward, header: Mapping[str, Any]) 
         "kind": KIND,
         "axes": list(rewards._axes),
         "hidden": [bias.shape[-1] for bias in g.biases[:-1]],
+        "features": rewards.head.shaping.weights[0].shape[-1],
         "discount": rewards.head.discount,
     }
     save_tree(path, rewards, {**header, **shape})
@@ -84,7 +86,8 @@ def load_rewards(path: Path) -> LearnedReward:
             f"{path}: expected a learned reward, got another checkpoint; AIRL writes them as "
             "models/HOME/METHOD.reward.safetensors in its results folder"
         )
-    head = ShapedReward.random(tuple(header["hidden"]), header["discount"], jax.random.key(0))
+    sizes, width = tuple(header["hidden"]), header.get("features", FEATURES)
+    head = ShapedReward.random(sizes, header["discount"], jax.random.key(0), width)
     one = LearnedReward(head, StateScaler(jnp.zeros(6), jnp.ones(6)))
     axes = tuple(header["axes"])
     runs = axes[:1]  # the members of a committee share the scaler of their run

@@ -96,7 +96,7 @@ class MaxEnt:
     def start(self, task: Task[Expert], key: Array) -> MaxEntState:
         """Random policy and first reward."""
         learner_key, reward_key, key = jax.random.split(key, 3)
-        learner = self.improvement.start(learner_key)
+        learner = self.improvement.start(learner_key, task.environment.width)
         learned = self.reward.start(task.teacher, self.improvement.discount, reward_key)
         return MaxEntState(learner, learned, self.improvement.policy(learner), jnp.zeros((), int), key)
 

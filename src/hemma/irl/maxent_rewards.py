@@ -123,7 +123,8 @@ class NeuralMaxEnt:
 
     def start(self, expert: Expert, discount: float, key: Array) -> LearnedNetworks:
         """Random networks."""
-        reward = ShapedReward.random(self.hidden, discount, key)
+        width = expert.transitions.features.shape[-1]
+        reward = ShapedReward.random(self.hidden, discount, key, width)
         return LearnedNetworks(reward, begin(self._method(), reward))
 
     def improve(

@@ -18,7 +18,9 @@ class AbstractHead(eqx.Module):
 
     @classmethod
     @abstractmethod
-    def random(cls, hidden: tuple[int, ...], discount: float, key: Array) -> "AbstractHead":
+    def random(
+        cls, hidden: tuple[int, ...], discount: float, key: Array, features: int = FEATURES
+    ) -> "AbstractHead":
         """A head with random weights and hidden layers of these sizes; ``discount`` is gamma."""
 
     @abstractmethod
@@ -51,11 +53,13 @@ class ShapedReward(AbstractHead):
     """gamma."""
 
     @classmethod
-    def random(cls, hidden: tuple[int, ...], discount: float, key: Array) -> "ShapedReward":
+    def random(
+        cls, hidden: tuple[int, ...], discount: float, key: Array, features: int = FEATURES
+    ) -> "ShapedReward":
         """Random g and h."""
         g_key, h_key = jax.random.split(key)
-        g = Network((FEATURES + ACTIONS, *hidden, 1), g_key)
-        return cls(g, Network((FEATURES, *hidden, 1), h_key), discount)
+        g = Network((features + ACTIONS, *hidden, 1), g_key)
+        return cls(g, Network((features, *hidden, 1), h_key), discount)
 
     def __call__(self, transition: Transitions) -> Float[Array, ""]:
         """r(s, a, s') = g(s, a) + gamma h(s') - h(s) of one transition."""
@@ -86,9 +90,11 @@ class ImitationScore(AbstractHead):
     """f(s, a)."""
 
     @classmethod
-    def random(cls, hidden: tuple[int, ...], discount: float, key: Array) -> "ImitationScore":
+    def random(
+        cls, hidden: tuple[int, ...], discount: float, key: Array, features: int = FEATURES
+    ) -> "ImitationScore":
         """Random f; the discount plays no part in it."""
-        return cls(Network((FEATURES + ACTIONS, *hidden, 1), key))
+        return cls(Network((features + ACTIONS, *hidden, 1), key))
 
     def __call__(self, transition: Transitions) -> Float[Array, ""]:
         """f(s, a) of one transition."""

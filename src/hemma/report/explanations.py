@@ -1,6 +1,6 @@
 """How to read the report: what each number means, and what it does not say."""
 
-from hemma.report.methods import MEANINGS, in_order
+from hemma.report.methods import in_order, meaning_of
 from hemma.report.numbers import DASH
 from hemma.report.results import HomeResults, Results
 
@@ -96,9 +96,9 @@ def method_meanings(results: Results) -> list[tuple[str, str]]:
         )
     )
     return [
-        (name, MEANINGS[name] + _days(name, results.finished.values()))
+        (name, meaning + _days(name, results.finished.values()))
         for name in present
-        if name in MEANINGS
+        if (meaning := meaning_of(name)) is not None
     ]
 
 

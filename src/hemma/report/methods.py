@@ -35,6 +35,17 @@ class Group:
     methods: tuple[str, ...]
 
 
+PUBLISHED = "Knows tomorrow's prices"
+SIGHTS = {
+    "past": "the last 24 hours and the day of the week",
+    "published": "the prices of the coming hours as far as they are published",
+    "forecast": "a forecast of the coming hours, and how well it did of late",
+    "past and forecast": "the last 24 hours, the day of the week and a forecast of the coming hours",
+    "published and forecast": "published prices and a forecast of what is not published",
+}
+"""What the words behind a method's name say that it sees."""
+CAUSAL = "taught by the default controller, which knows no more, instead of the expert in hindsight"
+
 GROUPS = (
     Group(
         "Learned from demonstrations",
@@ -43,7 +54,7 @@ GROUPS = (
     Group("Learned from a hand-written reward", ("PPO", "DDPG")),
     Group("Plans again in every slot", ("default", "MPC forecast", "MPC hourly means", "MPC yesterday")),
     Group("Fixed rules", ("thresholds", "Rule", "no battery")),
-    Group("Knows tomorrow's prices", ("default published",)),
+    Group(PUBLISHED, ("default published",)),
     Group("Knows the future", ("MPC perfect", "HMPC", "HMPC joint", "DNLP", "optimum")),
 )
 OTHERS = "Others"
@@ -112,20 +123,55 @@ MEANINGS = {
 }
 
 
+def plain(method: str) -> str:
+    """``HA-1`` of ``HA-1 published causal``: the method that sees the paper's state and has its teacher."""
+    if method in MEANINGS:
+        return method
+    first = [name for name in MEANINGS if method.startswith(f"{name} ") and _added(method, name) is not None]
+    return first[0] if first else method
+
+
+def meaning_of(method: str) -> str | None:
+    """What a method is; None if nothing is known of it."""
+    first = plain(method)
+    return MEANINGS.get(method) if first == method else f"as {first}, {_added(method, first)}"
+
+
+def _added(method: str, first: str) -> str | None:
+    """What the words behind the name ``first`` add to it; None if they are no such words."""
+    rest = method.removeprefix(f"{first} ")
+    seen = rest.removesuffix("causal").strip()
+    if seen and seen not in SIGHTS:
+        return None
+    parts = [f"which also sees {SIGHTS[seen]}"] if seen else []
+    return ", ".join(parts + ([CAUSAL] if rest.endswith("causal") else []))
+
+
 def in_order(methods: Iterable[str]) -> list[str]:
-    """Method names in the order of the groups; those that no group knows come last, as they came."""
+    """Method names in the order of the groups, each before those that see more or have another teacher.
+
+    Those that no group knows come last, as they came.
+    """
     known = [name for group in GROUPS for name in group.methods]
     present = list(methods)
-    return [name for name in known if name in present] + [name for name in present if name not in known]
+    ours = [name for name in present if plain(name) in known]
+    ours.sort(key=lambda name: (known.index(plain(name)), name != plain(name)))
+    return ours + [name for name in present if plain(name) not in known]
 
 
 def grouped(methods: Iterable[str]) -> dict[str, list[str]]:
     """The methods present by the titles of their groups, all in order; strangers stand under ``OTHERS``."""
-    present = in_order(methods)
-    groups = {group.title: [name for name in group.methods if name in present] for group in GROUPS}
-    known = {name for group in GROUPS for name in group.methods}
-    groups[OTHERS] = [name for name in present if name not in known]
+    groups: dict[str, list[str]] = {group.title: [] for group in GROUPS} | {OTHERS: []}
+    for name in in_order(methods):
+        groups[_title(name)].append(name)
     return {title: names for title, names in groups.items() if names}
+
+
+def _title(method: str) -> str:
+    """Of its group; who sees published prices stands with those that know them."""
+    if plain(method) != method and "published" in method:
+        return PUBLISHED
+    return next((group.title for group in GROUPS if plain(method) in group.methods), OTHERS)
 
 
 def look_of(method: str) -> Look:

@@ -45,11 +45,11 @@ class Critic(eqx.Module):
     advantage: Rectified
     """A."""
 
-    def __init__(self, hidden: tuple[int, ...], key: Array):
+    def __init__(self, hidden: tuple[int, ...], key: Array, features: int = FEATURES):
         """Random weights."""
         value_key, advantage_key = jax.random.split(key)
-        self.value = Rectified((FEATURES, *hidden, 1), value_key)
-        self.advantage = Rectified((FEATURES + ACTIONS, *hidden, 1), advantage_key)
+        self.value = Rectified((features, *hidden, 1), value_key)
+        self.advantage = Rectified((features + ACTIONS, *hidden, 1), advantage_key)
 
     def __call__(
         self, features: Float[Array, "features"], fractions: Float[Array, "actions"]

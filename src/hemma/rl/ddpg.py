@@ -113,9 +113,10 @@ class DDPG:
 
     def start(self, task: Task[ExplicitReward], key: Array) -> DDPGState:
         """Random networks, and a memory of what the random actor did."""
+        width = task.environment.width
         actor_key, critic_key, act_key, key = jax.random.split(key, 4)
-        actor = GaussianPolicy(self.settings.hidden, actor_key)
-        critic = Critic(self.settings.hidden, critic_key)
+        actor = GaussianPolicy(self.settings.hidden, actor_key, width)
+        critic = Critic(self.settings.hidden, critic_key, width)
         both = ActorAndCritic(actor, critic)
         experience, _ = self._act(task, actor, jnp.zeros((), int), act_key)
         memory = empty_memory(experience, self.settings.capacity).add(experience)

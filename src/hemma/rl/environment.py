@@ -2,11 +2,12 @@
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 from jaxtyping import Float, Int
 
 from hemma.home import Home, HomeState, Step, observe, paper_state
 from hemma.rl.actions import to_power
-from hemma.rl.policy import GaussianPolicy, log_density
+from hemma.rl.policy import FEATURES, GaussianPolicy, log_density
 from hemma.rl.scaling import StateScaler
 from hemma.types import Array, Costs, Exogenous
 
@@ -48,6 +49,13 @@ class Environment(eqx.Module):
     available: Int[Array, ""]
     """How many slots of ``exogenous`` may be replayed; what lies behind them is padding and never read."""
     scaler: StateScaler
+    context: Float[Array, "slots figures"]
+    """What is seen in each slot besides the paper's state, scaled; no figures in the paper's method."""
+
+    @property
+    def width(self) -> int:
+        """How many features a policy sees."""
+        return FEATURES + self.context.shape[-1]
 
     def reset(self, key: Array) -> tuple[HomeState, Array]:
         """A random first slot of the traces, battery level and indoor temperature.
@@ -66,8 +74,9 @@ class Environment(eqx.Module):
         return jax.tree.map(lambda x: x[slot % self.available], self.exogenous)
 
     def features(self, state: HomeState, slot: Array) -> Float[Array, "features"]:
-        """The scaled state of the paper when the home stands at the start of ``slot``."""
-        return self.scaler(paper_state(observe(state, self.at(slot))))
+        """The scaled state of the paper when the home stands at the start of ``slot``, and the context."""
+        seen = self.scaler(paper_state(observe(state, self.at(slot))))
+        return jnp.concatenate([seen, self.context[slot % self.available]])
 
     def step(self, state: HomeState, start: Array, fractions: Array, disturbance: Array) -> Step:
         """One slot of a rollout that began in the slot ``start``."""

@@ -82,7 +82,7 @@ class ExplicitLearning:
     def start(self, task: Task[ExplicitReward], key: Array) -> ExplicitState:
         """A random policy."""
         learner_key, key = jax.random.split(key)
-        learner = self.improvement.start(learner_key)
+        learner = self.improvement.start(learner_key, task.environment.width)
         return ExplicitState(learner, self.improvement.policy(learner), jnp.zeros((), int), key)
 
     def iterate(self, state: ExplicitState, task: Task[ExplicitReward]) -> tuple[ExplicitState, Measured]:

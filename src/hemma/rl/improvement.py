@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from hemma.rl import ppo
 from hemma.rl.environment import Environment, Rollout, collect
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policy import FEATURES, GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.types import Array
 
@@ -42,8 +42,8 @@ class Improvement(Protocol):
         """gamma."""
         ...
 
-    def start(self, key: Array) -> Any:
-        """A learner with a random policy."""
+    def start(self, key: Array, features: int = FEATURES) -> Any:
+        """A learner with a random policy of so many features."""
         ...
 
     def policy(self, learner: Any) -> GaussianPolicy:
@@ -77,9 +77,9 @@ class Proximal:
         """gamma."""
         return self.settings.discount
 
-    def start(self, key: Array) -> ppo.Learner:
+    def start(self, key: Array, features: int = FEATURES) -> ppo.Learner:
         """Random policy and value function."""
-        return ppo.start(self.settings, key)
+        return ppo.start(self.settings, key, features)
 
     def policy(self, learner: ppo.Learner) -> GaussianPolicy:
         """The policy."""

@@ -31,7 +31,8 @@ def load_controllers(path: Path, planning_home: Home) -> PolicyController:
             "models/HOME/METHOD.safetensors in its results folder"
         )
     axes = shapes[f"{place}.bias"][:-1]  # runs, and the members of a committee
-    policy = _stacked(GaussianPolicy(_hidden(shapes, place), jax.random.key(0)), axes)
+    features = shapes[f"{place}.network.weights[0]"][-1]
+    policy = _stacked(GaussianPolicy(_hidden(shapes, place), jax.random.key(0), features), axes)
     like = PolicyController(
         policy=CommitteePolicy(policy) if is_committee else policy,
         scaler=_stacked(StateScaler(jnp.zeros(HOUR), jnp.ones(HOUR)), axes[:1]),

@@ -65,11 +65,11 @@ class ActorCritic(eqx.Module):
     policy: GaussianPolicy
     value: Network
 
-    def __init__(self, hidden: tuple[int, ...], key: Array):
+    def __init__(self, hidden: tuple[int, ...], key: Array, features: int = FEATURES):
         """Random weights."""
         policy_key, value_key = jax.random.split(key)
-        self.policy = GaussianPolicy(hidden, policy_key)
-        self.value = Network((FEATURES, *hidden, 1), value_key)
+        self.policy = GaussianPolicy(hidden, policy_key, features)
+        self.value = Network((features, *hidden, 1), value_key)
 
     def values(self, features: Float[Array, "*batch features"]) -> Float[Array, "*batch"]:
         """V(s) of a batch of states."""
@@ -157,9 +157,9 @@ class Objective(eqx.Module):
     """Share of the learning rates to use, for rates that fall as training goes on."""
 
 
-def start(settings: PPOSettings, key: Array) -> Learner:
+def start(settings: PPOSettings, key: Array, features: int = FEATURES) -> Learner:
     """A learner with random weights."""
-    networks = ActorCritic(settings.hidden, key)
+    networks = ActorCritic(settings.hidden, key, features)
     return Learner(networks, begin(optimiser(settings), networks))
 
 

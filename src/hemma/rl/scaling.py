@@ -3,7 +3,7 @@
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hemma.types import Array
 
@@ -11,6 +11,28 @@ HOUR = 6
 """Position of t' in the paper's state."""
 SPIKY = np.array([True, True, False, False, False, True])
 """Which of the other quantities have rare values far from the usual ones: p, l and u."""
+
+
+PLAIN = -1
+"""Kind of a figure that has no unit and is of about unit size as it is."""
+
+
+class Context(eqx.Module):
+    """What a policy sees in each slot besides the paper's state, in units: figures, counted from origins."""
+
+    figures: Float[Array, "*slots figures"]
+    origins: Float[Array, "*slots figures"]
+    """What each figure is counted from, mostly the present value of its quantity, in its unit."""
+    kinds: Int[Array, "*runs figures"]
+    """Position in the paper's state of the quantity that a figure is of, or PLAIN."""
+
+    def at(self, slot: Array) -> "Context":
+        """That of one slot."""
+        return Context(self.figures[slot], self.origins[slot], self.kinds)
+
+
+NOTHING = Context(np.zeros((1, 0)), np.zeros((1, 0)), np.zeros(0, int))
+"""The paper's state and nothing else."""
 
 
 class StateScaler(eqx.Module):
@@ -35,8 +57,24 @@ class StateScaler(eqx.Module):
         quantities = jnp.where(SPIKY, jnp.arcsinh(scaled), scaled)
         return jnp.concatenate([quantities, jnp.sin(angle)[..., None], jnp.cos(angle)[..., None]], axis=-1)
 
-    def quantities(self, features: Float[Array, "*batch 8"]) -> Float[Array, "*batch 6"]:
-        """The inverse: (p, l, E, T_out, T_in, u) in their units."""
+    def context(self, context: Context) -> Float[Array, "*slots figures"]:
+        """Features of what is seen besides the state: b(x) - b(x_0) of each figure x and its origin x_0.
+
+        b is what this scaler does to the quantity; figures that are PLAIN stay as they are.
+        """
+        if context.kinds.shape[-1] == 0:
+            return jnp.asarray(context.figures, float)
+        is_plain = context.kinds == PLAIN
+        of = jnp.where(is_plain, 0, context.kinds)
+
+        def bent(x: Array) -> Array:
+            scaled = (x - self.centre[of]) / self.spread[of]
+            return jnp.where(jnp.asarray(SPIKY)[of], jnp.arcsinh(scaled), scaled)
+
+        return jnp.where(is_plain, context.figures, bent(context.figures) - bent(context.origins))
+
+    def quantities(self, features: Float[Array, "*batch features"]) -> Float[Array, "*batch 6"]:
+        """The inverse, from the first of the features: (p, l, E, T_out, T_in, u) in their units."""
         scaled = features[..., :HOUR]
         return self.centre + self.spread * jnp.where(SPIKY, jnp.sinh(scaled), scaled)
 

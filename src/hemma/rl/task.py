@@ -14,7 +14,7 @@ from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.rl.actions import to_fractions
 from hemma.rl.environment import Environment, Transitions
-from hemma.rl.scaling import StateScaler, fit_scaler
+from hemma.rl.scaling import NOTHING, Context, StateScaler, fit_scaler
 from hemma.types import Action, Array, Costs, Exogenous, Observation
 
 
@@ -73,12 +73,18 @@ class Task(eqx.Module, Generic[Teacher]):
 
 
 def make_task(
-    planning_home: Home, home: Home, exogenous: Exogenous, demonstrated: Demonstrated, seed: int
+    planning_home: Home,
+    home: Home,
+    exogenous: Exogenous,
+    demonstrated: Demonstrated,
+    seed: int,
+    context: Context = NOTHING,
 ) -> Task[Expert]:
     """The task of learning from ``demonstrated`` and the traces ``exogenous`` of the same days, nothing else.
 
     ``planning_home`` is ``home`` with an identified thermal model: it turns the learner's fractions into
     powers, and the expert's powers into fractions. The scaler is fitted to the demonstrated states.
+    ``context`` is what there is to see in each slot of ``exogenous`` besides the paper's state.
     """
     if len(demonstrated.actions) != exogenous.slots - 1:
         raise HemmaError(
@@ -88,24 +94,32 @@ def make_task(
     scaler = fit_scaler(np.asarray(demonstrated.states))
     actions = Action(*jnp.asarray(demonstrated.actions, float).T)
     states = jnp.asarray(demonstrated.states, float)
+    environment = _environment(planning_home, home, exogenous, scaler, context)
+    seen = environment.context
     transitions = Transitions(
-        features=scaler(states),
+        features=jnp.concatenate([scaler(states), seen[:-1]], axis=1),
         fractions=to_fractions(planning_home, _observed(states), actions),
-        next_features=scaler(jnp.asarray(demonstrated.next_states, float)),
+        next_features=jnp.concatenate(
+            [scaler(jnp.asarray(demonstrated.next_states, float)), seen[1:]], axis=1
+        ),
     )
     expert = Expert(transitions, jnp.asarray(len(demonstrated.actions)))
-    environment = _environment(planning_home, home, exogenous, scaler)
     return Task(environment, expert, jnp.asarray(seed), _stream(exogenous))
 
 
 def explicit_task(
-    planning_home: Home, home: Home, exogenous: Exogenous, comfort_price: float, seed: int
+    planning_home: Home,
+    home: Home,
+    exogenous: Exogenous,
+    comfort_price: float,
+    seed: int,
+    context: Context = NOTHING,
 ) -> Task[ExplicitReward]:
     """The task of learning from the explicit reward with beta_T = ``comfort_price`` on these days.
 
-    ``planning_home`` is as in ``make_task``. The scaler is fitted to the traces, and to battery energies and
-    indoor temperatures as rollouts start with: spread evenly over the battery's range, and over the comfort
-    band and one degree beyond.
+    ``planning_home`` and ``context`` are as in ``make_task``. The scaler is fitted to the traces, and to
+    battery energies and indoor temperatures as rollouts start with: spread evenly over the battery's range,
+    and over the comfort band and one degree beyond.
     """
     battery, comfort = home.battery, home.comfort
     spread = np.linspace(0.0, 1.0, exogenous.slots)
@@ -121,7 +135,7 @@ def explicit_task(
     )
     scaler = fit_scaler(np.stack([np.asarray(column, float) for column in columns], axis=1))
     reward = ExplicitReward(jnp.asarray(comfort_price, float))
-    environment = _environment(planning_home, home, exogenous, scaler)
+    environment = _environment(planning_home, home, exogenous, scaler, context)
     return Task(environment, reward, jnp.asarray(seed), _stream(exogenous))
 
 
@@ -149,11 +163,22 @@ def side_by_side(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
     return jax.tree.map(together, *tasks)
 
 
-def _environment(planning_home: Home, home: Home, exogenous: Exogenous, scaler: StateScaler) -> Environment:
+def _environment(
+    planning_home: Home, home: Home, exogenous: Exogenous, scaler: StateScaler, context: Context
+) -> Environment:
+    if context.figures.shape[-1] == 0:
+        nothing = jnp.zeros((exogenous.slots, 0))
+        context = Context(nothing, nothing, context.kinds)
+    if len(context.figures) != exogenous.slots:
+        raise HemmaError(
+            f"context: expected a row for each of the {exogenous.slots} slots of the traces, got "
+            f"{len(context.figures)}; observe the days that are learned from"
+        )
     planning_home, home, traces = jax.tree.map(
         lambda x: jnp.asarray(x, float), (planning_home, home, exogenous)
     )
-    return Environment(planning_home, home, traces, jnp.asarray(exogenous.slots), scaler)
+    seen = scaler.context(jax.tree.map(jnp.asarray, context))
+    return Environment(planning_home, home, traces, jnp.asarray(exogenous.slots), scaler, seen)
 
 
 def _observed(states: Float[Array, "samples 7"]) -> Observation:

@@ -14,7 +14,7 @@ from jaxtyping import Float
 
 from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
-from hemma.home import HomeState, Step, observe
+from hemma.home import HomeState, Step
 from hemma.rl.environment import Environment
 from hemma.rl.policy import Policy, PolicyController
 from hemma.rl.task import Task
@@ -169,14 +169,13 @@ def _chunk(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Curve]:
 def _score(policy: Policy, environment: Environment) -> tuple[Array, Array]:
     """Daily cost and mean deviation of the mean action on the training traces, padding left out."""
     home, traces = environment.home, environment.exogenous
-    controller = PolicyController(policy, environment.scaler, environment.planning_home)
 
-    def slot(state: HomeState, now) -> tuple[HomeState, Step]:
-        action = controller(observe(state, now), jax.random.key(0))
-        step = home.step(state, now, action, jnp.zeros(()))
+    def slot(state: HomeState, _: None) -> tuple[HomeState, Step]:
+        fractions = policy.mean(environment.features(state, state.slot))
+        step = environment.step(state, jnp.zeros((), int), fractions, jnp.zeros(()))
         return step.state, step
 
-    _, steps = jax.lax.scan(slot, home.reset(), traces)
+    _, steps = jax.lax.scan(slot, home.reset(), length=traces.slots)
     counted = jnp.arange(traces.slots) < environment.available
     days = environment.available * home.slot_length / 24
     cost = jnp.sum(jnp.where(counted, steps.costs.transaction + steps.costs.ageing, 0.0)) / days

@@ -1,0 +1,67 @@
+"""Stage: demonstrations of a planner that knows no more than its pupil may: the default controller's."""
+
+import time
+
+import jax.numpy as jnp
+import numpy as np
+
+from hemma.baselines.rolling import rolling_mpc
+from hemma.experiment.demonstrate import INDOOR, Demonstration, Expert
+from hemma.experiment.fingerprint import code, fingerprint
+from hemma.experiment.sight import Sight
+from hemma.experiment.store import Store
+from hemma.home import Trajectory, paper_state
+from hemma.rl.task import Demonstrated
+
+STAGE = "demonstrate causally"
+
+
+def causal_demonstration(store: Store, expert: Expert, sight: Sight, days: int) -> Demonstration:
+    """What the rolling planner does on the first ``days`` days, with forecasts that have not seen them.
+
+    It plans as the default controller does (``baselines.rolling``), each three days with a forecast fitted
+    to all other training days, and with published prices where its pupil sees them. Demonstrations of an
+    earlier run are taken again.
+    """
+    case = expert.case
+    layers = code("baselines", "expert")
+    facts = (sight.facts, sight.model.published, case.experiment.forecast_horizon)
+    mark = fingerprint(STAGE, layers, expert.mark, facts, days)
+    variant = "-published" if sight.model.published else ""
+    product = f"causal-demonstrations-{days}-days{variant}"
+    content = store.kept(product, mark)
+    if content is None:
+        content = _shown(store, expert, sight, days)
+        store.keep(product, mark, [], content)
+    else:
+        store.progress.reused(STAGE, content["message"])
+    arrays = (jnp.asarray(content[name], float) for name in ("states", "actions", "next_states"))
+    return Demonstration(days, Demonstrated(*arrays), mark)
+
+
+def _shown(store: Store, expert: Expert, sight: Sight, days: int) -> dict:
+    case, begun = expert.case, time.monotonic()
+    period, dt = case.first_days(days), float(case.home.slot_length)
+    store.progress.started(STAGE, 1)
+    known = case.first_days(case.training_days)
+    ahead = sight.observer.training_forecast(known, period.slots, dt, case.experiment.forecast_horizon)
+    path = rolling_mpc(expert.planning_home, case.home, period, ahead)
+    states, actions = transitions(path)
+    deviation = float(np.mean(case.home.comfort.deviation(states[1:, INDOOR])))
+    message = f"{days} days, {len(states) - 1} transitions, mean deviation {deviation:.3f} °C"
+    store.progress.finished(STAGE, message)
+    return {
+        "message": message,
+        "seconds": time.monotonic() - begun,
+        "states": states[:-1].tolist(),
+        "actions": actions[:-1].tolist(),
+        "next_states": states[1:].tolist(),
+    }
+
+
+def transitions(path: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """The paper's states (slots, 7) and the actions (slots, 2) [kW] of a path."""
+    action = path.steps.action
+    return np.asarray(paper_state(path.observations), float), np.stack(
+        [np.asarray(action.battery_power), np.asarray(action.hvac_power)], axis=-1
+    )
