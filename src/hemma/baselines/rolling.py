@@ -12,10 +12,11 @@ from hemma.errors import HemmaError
 from hemma.expert.affine import AffineResponse, affine_response
 from hemma.expert.carry_out import carry_out, net_power
 from hemma.expert.constraints import add_battery, add_building, power_balance
-from hemma.expert.programme import EXACT, Programme, SolverSettings
+from hemma.expert.programme import EXACT, Programme
 from hemma.home import Home, HomeState, Trajectory
+from hemma.home.adaptation import Adaptation, corrected, unadapted
 from hemma.home.precision import in_double, in_numpy
-from hemma.home.sensors import Measured, Readings, faultless, first_measured, measure_state
+from hemma.home.sensors import Measured, Readings, faultless, first_measured, measure_state, taught
 from hemma.types import Action, Array, Exogenous
 
 DEAR = 1000.0
@@ -28,7 +29,7 @@ def rolling_mpc(
     exogenous: Exogenous,
     forecasts: Exogenous,
     readings: Readings | None = None,
-    solver: SolverSettings = EXACT,
+    adapts: bool = False,
 ) -> Trajectory:
     """Run ``real_home`` from its start through ``exogenous``, planning every slot through ``planning_home``.
 
@@ -40,8 +41,9 @@ def rolling_mpc(
 
     The planning home's thermal model must be affine in the HVAC power; another raises ``HemmaError``.
     ``readings`` say what is measured of temperature and energy, and what disturbs the real home; without
-    them everything is as it is. What they make of ``exogenous`` is the affair of whoever forecasts. All
-    results are NumPy float64.
+    them everything is as it is. What they make of ``exogenous`` is the affair of whoever forecasts. If it
+    ``adapts``, it plans through a building that is corrected by what was measured before
+    (``home.adaptation``). All results are NumPy float64.
     """
     horizon = _checked_horizon(exogenous, forecasts)
     readings = faultless(exogenous) if readings is None else readings
@@ -51,16 +53,24 @@ def rolling_mpc(
         real = _RealHome(*in_double((real_home, exogenous, readings)))
         initial = state = real.home.reset()
         last = first_measured(state)
+        adaptation = unadapted(planning)
     actions = np.empty((exogenous.slots, 2))
     for slot in range(exogenous.slots):
         planned = min(horizon, exogenous.slots - slot)
         with jax.enable_x64(True):
             index = jnp.asarray(slot)
-            last = real.measured(state, index, last)
-            thermal = planning.thermal_model.initial(last.temperature)
-            response = _first(affine_response(planning, _row(ahead, index), thermal), planned)
+            before, last = last, real.measured(state, index, last)
+            if adapts and slot > 0:
+                power = jnp.asarray(actions[slot - 1, 1])
+                adaptation = _learned(adaptation, planning, real.readings, index - 1, power, (before, last))
+            now, temperature = planning, last.temperature
+            if adapts:
+                now = corrected(planning, adaptation)
+                temperature = _present(adaptation, planning, real.readings, index, temperature)
+            thermal = now.thermal_model.initial(temperature)
+            response = _first(affine_response(now, _row(ahead, index), thermal), planned)
             window = jax.tree.map(lambda x, slot=slot, planned=planned: x[slot, :planned], beliefs)
-            actions[slot] = _plan(believed, window, response, float(last.energy), solver)
+            actions[slot] = _plan(believed, window, response, float(last.energy))
             state = real.after(state, index, actions[slot])
     return carry_out(real_home, exogenous, Action(*actions.T), initial, readings.disturbance)
 
@@ -82,15 +92,13 @@ def comfort_price(home: Home, window: Exogenous, response: AffineResponse) -> fl
     return DEAR * dearest * float(home.slot_length) / float(np.min(effects))
 
 
-def _plan(
-    home: Home, window: Exogenous, response: AffineResponse, energy: float, solver: SolverSettings
-) -> tuple[float, float]:
+def _plan(home: Home, window: Exogenous, response: AffineResponse, energy: float) -> tuple[float, float]:
     """e and h [kW] of the first slot of the best plan."""
     programme = Programme(window.slots)
     building = add_building(programme, home, response, comfort_price(home, window, response))
     store = add_battery(programme, home, window, energy)
     power_balance(programme, home, window, building.hvac, store)
-    x = programme.solve(solver).values
+    x = programme.solve(EXACT).values
     e = net_power(home.battery, x[store.charge[:1]], x[store.discharge[:1]])
     return float(e[0]), float(x[building.hvac[0]])
 
@@ -129,6 +137,28 @@ class _RealHome:
 
 
 _measured = eqx.filter_jit(measure_state)
+
+
+@eqx.filter_jit
+def _learned(
+    adaptation: Adaptation,
+    believed: Home,
+    readings: Readings,
+    slot: Int[Array, ""],
+    hvac_power: Array,
+    measured: tuple[Measured, Measured],
+) -> Adaptation:
+    """After ``slot``, which began and ended with what was ``measured``."""
+    read = jax.tree.map(lambda x: x[slot], readings.exogenous)
+    return adaptation.learned(believed, taught(*measured), read, hvac_power)
+
+
+@eqx.filter_jit
+def _present(
+    adaptation: Adaptation, believed: Home, readings: Readings, slot: Int[Array, ""], reading: Array
+) -> Array:
+    read = jax.tree.map(lambda x: x[slot], readings.exogenous)
+    return adaptation.temperature(believed, reading, read)
 
 
 @eqx.filter_jit

@@ -48,6 +48,8 @@ class FaultSettings:
     """How many runs of a learned method are measured, the first ones."""
     margin: float = 1.0
     """How far beyond the band the safety layer lets the temperature go [degC]."""
+    adapts: bool = True
+    """Whether all methods correct the identified building by what they measure while they run."""
 
     def __post_init__(self):
         """Refuse magnitudes without meaning."""

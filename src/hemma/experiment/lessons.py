@@ -6,7 +6,6 @@ from itertools import accumulate
 
 import jax
 
-from hemma.baselines.observations import PAPER
 from hemma.experiment.case import Case
 from hemma.experiment.causal import causal_demonstration
 from hemma.experiment.demonstrate import Demonstration, Expert, demonstration
@@ -119,7 +118,7 @@ def _alike(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation]
             algorithm=one.algorithm,
             task=jax.tree.map(lambda x, part=slice(*part): x[part], together),
             basis=_basis(case, shown[one.label], sights[one.label]),
-            sight=None if one.pupil.model == PAPER else sights[one.label],
+            sight=sights[one.label],
         )
         for one, part in zip(wanted, zip([0, *ends], ends, strict=False), strict=True)
     }

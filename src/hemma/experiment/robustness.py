@@ -154,7 +154,7 @@ class Trial:
     def _watched(
         self, method: str, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
     ) -> FaultRun:
-        safety = SafetyLayer(self.expert.planning_home, self._settings.margin)
+        safety = SafetyLayer(self.expert.planning_home, self._settings.margin, self._settings.adapts)
         with jax.enable_x64(True):
             inputs = in_double((now.home, now.exogenous, controller, now.readings, safety, jax.random.key(0)))
             watched = in_numpy(_replayed(*inputs))
@@ -171,7 +171,14 @@ class Trial:
             case.experiment.forecast_horizon,
         )
         forecasts = planner.forecaster(outlook)
-        path = rolling_mpc(self.expert.planning_home, now.home, now.exogenous, forecasts, now.readings)
+        path = rolling_mpc(
+            self.expert.planning_home,
+            now.home,
+            now.exogenous,
+            forecasts,
+            now.readings,
+            adapts=self._settings.adapts,
+        )
         return _judged(planner.method, None, outcome_of(path.steps), problem, None)
 
 

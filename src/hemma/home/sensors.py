@@ -5,6 +5,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Bool, Float, Int
 
+from hemma.home.adaptation import corrected, unadapted
 from hemma.home.comfort import observed_comfort_power
 from hemma.home.home import Home, HomeState, Step, observe
 from hemma.home.replay import Controller
@@ -44,12 +45,14 @@ class Measured(eqx.Module):
     """E as last read [kWh]."""
     earlier: Float[Array, ""]
     """T_in one slot before, as it was [degC]."""
+    is_temperature_read: Bool[Array, ""]
+    """Whether T_in was read in this slot."""
 
 
 def first_measured(state: HomeState) -> Measured:
     """Before the first slot everything is as it is."""
     temperature = state.indoor_temperature
-    return Measured(temperature, state.battery_energy, temperature)
+    return Measured(temperature, state.battery_energy, temperature, jnp.ones((), bool))
 
 
 def measure_state(home: Home, state: HomeState, readings: Readings, slot: Array, last: Measured) -> Measured:
@@ -64,6 +67,7 @@ def measure_state(home: Home, state: HomeState, readings: Readings, slot: Array,
         temperature=jnp.where(readings.is_temperature_missing[slot], last.temperature, temperature),
         energy=jnp.where(readings.is_energy_missing[slot], last.energy, energy),
         earlier=state.indoor_temperature,
+        is_temperature_read=~readings.is_temperature_missing[slot],
     )
 
 
@@ -79,6 +83,8 @@ class SafetyLayer(eqx.Module):
     """As it is believed to be."""
     margin: Scalar = 1.0
     """[degC]."""
+    adapts: bool = eqx.field(static=True, default=False)
+    """Whether the building is corrected by what is measured (``hemma.home.adaptation``)."""
 
     def __call__(self, observation: Observation, asked: Action) -> tuple[Action, "Interventions"]:
         """What goes to the home, and what was changed."""
@@ -129,21 +135,41 @@ def watched_replay(
     safety: SafetyLayer,
     key: Array,
 ) -> WatchedStep:
-    """Let ``controller`` run ``home`` from its start by its ``readings``, behind a safety layer; (slots,)."""
+    """Let ``controller`` run ``home`` from its start by its ``readings``, behind a safety layer; (slots,).
 
-    def slot(carry: tuple[HomeState, Measured], inputs: tuple[Exogenous, Exogenous, Array, Array]):
-        state, last = carry
+    If the layer adapts, controller and layer act by a building that is corrected in every slot by what was
+    read in the slots before.
+    """
+    believed = safety.home
+
+    def slot(carry, inputs: tuple[Exogenous, Exogenous, Array, Array]):
+        state, last, adaptation = carry
         now, read, disturbance, key = inputs
         measured = measure_state(home, state, readings, state.slot, last)
         observation = read_observation(observe(state, read), measured)
-        action, interventions = safety(observation, controller(observation, key))
+        acting, guard = controller, safety
+        if safety.adapts:
+            temperature = adaptation.temperature(believed, measured.temperature, read)
+            observation = eqx.tree_at(lambda o: o.indoor_temperature, observation, temperature)
+            acting, guard = corrected((controller, safety), adaptation)
+        action, interventions = guard(observation, acting(observation, key))
         step = home.step(state, now, action, disturbance)
-        return (step.state, measured), WatchedStep(step, interventions)
+        following = jnp.minimum(state.slot + 1, exogenous.slots - 1)
+        after = measure_state(home, step.state, readings, following, measured)
+        adaptation = adaptation.learned(believed, taught(measured, after), read, action.hvac_power)
+        return (step.state, measured, adaptation), WatchedStep(step, interventions)
 
     start = home.reset()
     keys = jax.random.split(key, exogenous.slots)
     inputs = (exogenous, readings.exogenous, readings.disturbance, keys)
-    return jax.lax.scan(slot, (start, first_measured(start)), inputs)[1]
+    begin = (start, first_measured(start), unadapted(believed))
+    return jax.lax.scan(slot, begin, inputs)[1]
+
+
+def taught(before: Measured, after: Measured) -> tuple[Array, Array]:
+    """The readings of T_in at both ends of a slot [degC]; NaN where one of them is an older one."""
+    known = before.is_temperature_read & after.is_temperature_read
+    return before.temperature, jnp.where(known, after.temperature, jnp.nan)
 
 
 def read_observation(observation: Observation, measured: Measured) -> Observation:
