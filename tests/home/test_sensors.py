@@ -97,7 +97,7 @@ def test_readings_err_lag_and_fail_as_they_are_told_to():
     last = measure_state(HOME, state(21.0, 4.0), readings, jnp.asarray(2), last)
     assert (last.temperature, last.energy) == pytest.approx((21.0, 0.6))
     late = eqx.tree_at(lambda r: r.lag, faultless(week(3)), jnp.ones((), int))
-    last = Measured(jnp.asarray(20.0), jnp.asarray(1.0), earlier=jnp.asarray(19.5))
+    last = Measured(jnp.asarray(20.0), jnp.asarray(1.0), jnp.asarray(19.5), jnp.ones((), bool))
     last = measure_state(HOME, state(22.0, 3.0), late, jnp.asarray(0), last)
     assert (last.temperature, last.energy, last.earlier) == pytest.approx((19.5, 3.0, 22.0))
 

@@ -1,7 +1,9 @@
-"""A building that is not as identified, read late: corrected while the home runs, from what is measured.
+"""A building that is not as identified, or read late: corrected while the home runs, from what is measured.
 
-Two hypotheses side by side, T_in read in time or one slot late; under each a Kalman filter of three constants
-(recursive least squares): theta_{t+1} = theta_t, T_{t+1} - F_T(T_t, ...) = theta' phi_t + noise.
+Three hypotheses side by side: everything is read in time, everything one slot late, T_in alone one slot late.
+Under each a Kalman filter of three constants (recursive least squares): theta_{t+1} = theta_t,
+T_{t+1} - F_T(T_t, ...) = theta' phi_t + noise. The best one is believed, once it explains much more than the
+building as it was identified.
 """
 
 from typing import TypeVar
@@ -9,7 +11,7 @@ from typing import TypeVar
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from hemma.home.home import Home
 from hemma.home.thermal import AbstractThermalModel, ThermalDrivers, ThermalState
@@ -25,7 +27,9 @@ NOISE = 0.2
 MEMORY = 0.95
 """Share of the past errors of the hypotheses that counts on a slot later."""
 DOUBT = 0.5
-"""Readings count as late only if that explains them with less than this share of the error."""
+"""A hypothesis is believed once it leaves less than this share of the squared error as identified."""
+IN_TIME, ALL_LATE, LATE = range(3)
+"""The hypotheses; the last is that of T_in alone."""
 
 
 class CorrectedThermalModel(AbstractThermalModel):
@@ -48,25 +52,34 @@ class CorrectedThermalModel(AbstractThermalModel):
 
 
 class Adaptation(eqx.Module):
-    """What is known of the building under both hypotheses, in time first and late second."""
+    """What is known of the building under each hypothesis."""
 
-    corrections: Float[Array, "2 3"]
+    corrections: Float[Array, "3 3"]
     """Means of theta."""
-    covariances: Float[Array, "2 3 3"]
-    errors: Float[Array, "2"]
-    """Squared errors of the predictions, those long past forgotten [degC^2]."""
+    covariances: Float[Array, "3 3 3"]
+    errors: Float[Array, "3"]
+    """Squared errors of their predictions, those long past forgotten [degC^2]."""
+    error: Float[Array, ""]
+    """The same of the building as identified, read in time."""
     power: Float[Array, ""]
     """HVAC power of the slot before [kW]; NaN before there was one."""
+    exogenous: Exogenous
+    """The slot before, as it was read."""
 
     @property
-    def is_late(self) -> Bool[Array, ""]:
-        """Whether readings are better explained as those of the slot before."""
-        return self.errors[1] < DOUBT * self.errors[0]
+    def best(self) -> Int[Array, ""]:
+        """The hypothesis that predicts best."""
+        return jnp.argmin(self.errors)
+
+    @property
+    def is_believed(self) -> Bool[Array, ""]:
+        """Whether it explains so much more than the building as identified."""
+        return self.errors[self.best] < DOUBT * self.error
 
     @property
     def correction(self) -> Float[Array, "3"]:
-        """theta under the better hypothesis."""
-        return jnp.where(self.is_late, self.corrections[1], self.corrections[0])
+        """theta to plan with: that of the best hypothesis if it is believed, else 0."""
+        return jnp.where(self.is_believed, self.corrections[self.best], 0.0)
 
     def learned(
         self, home: Home, readings: tuple[Array, Array], exogenous: Exogenous, hvac_power: Array
@@ -74,17 +87,16 @@ class Adaptation(eqx.Module):
         """After a slot with these readings of T_in at its ends [degC], and ``hvac_power`` [kW] in it.
 
         ``home`` is the one as identified, ``exogenous`` the slot as it was read. A reading that is no number
-        teaches nothing. A late reading of a slot's end is that of its start: the power that led from the
-        one reading to the other is that of the slot before.
+        teaches nothing. A late reading of a slot's end is that of its start: the power that led from the one
+        reading to the other is that of the slot before.
         """
-        powers = jnp.stack([jnp.asarray(hvac_power, float), self.power])
         before, after = readings
-        state = home.thermal_model.initial(before)
+        power = jnp.asarray(hvac_power, self.power.dtype)
+        state, drivers = home.thermal_model.initial(before), self._drivers(home, exogenous, power)
 
-        def filtered(correction: Array, covariance: Array, power: Array) -> tuple[Array, Array, Array]:
-            drivers = home.thermal_drivers(exogenous, power, jnp.zeros(()))
-            phi = influences(state, drivers)
-            surprise = after - home.thermal_model(state, drivers).indoor_temperature - phi @ correction
+        def filtered(correction: Array, covariance: Array, acted: ThermalDrivers) -> tuple[Array, ...]:
+            phi = influences(state, acted)
+            surprise = after - home.thermal_model(state, acted).indoor_temperature - phi @ correction
             spread = covariance @ phi
             gain = spread / (phi @ spread + NOISE**2)
             known = jnp.isfinite(surprise)
@@ -94,17 +106,32 @@ class Adaptation(eqx.Module):
                 surprise**2,
             )
 
-        corrections, covariances, errors = jax.vmap(filtered)(self.corrections, self.covariances, powers)
-        both = jnp.all(jnp.isfinite(errors))
-        errors = jnp.where(both, MEMORY * self.errors + errors, self.errors)
-        return Adaptation(corrections, covariances, errors, powers[0])
+        corrections, covariances, errors = jax.vmap(filtered)(self.corrections, self.covariances, drivers)
+        in_time = jax.tree.map(lambda x: x[IN_TIME], drivers)
+        error = (after - home.thermal_model(state, in_time).indoor_temperature) ** 2
+        known = jnp.all(jnp.isfinite(errors))
+        return Adaptation(
+            corrections=corrections,
+            covariances=covariances,
+            errors=jnp.where(known, MEMORY * self.errors + errors, self.errors),
+            error=jnp.where(known, MEMORY * self.error + error, self.error),
+            power=power,
+            exogenous=jax.tree.map(lambda x: jnp.asarray(x, power.dtype), exogenous),
+        )
 
     def temperature(self, home: Home, reading: Array, exogenous: Exogenous) -> Float[Array, ""]:
-        """T_in now [degC]: the reading, or what it will have become since where it is late."""
+        """T_in now [degC]: the reading, or what it will have become since where it is believed to be late."""
         model = CorrectedThermalModel(home.thermal_model, self.correction)
-        drivers = home.thermal_drivers(exogenous, self.power, jnp.zeros(()))
-        since = model(model.initial(reading), drivers).indoor_temperature
-        return jnp.where(self.is_late & jnp.isfinite(since), since, reading)
+        acted = jax.tree.map(lambda x: x[self.best], self._drivers(home, exogenous, self.power))
+        since = model(model.initial(reading), acted).indoor_temperature
+        is_late = self.is_believed & (self.best != IN_TIME) & jnp.isfinite(since)
+        return jnp.where(is_late, since, reading)
+
+    def _drivers(self, home: Home, exogenous: Exogenous, power: Array) -> ThermalDrivers:
+        """What led from one reading to the next under each hypothesis, (3,)."""
+        powers = jnp.stack([power, self.power, self.power])
+        pairs = jax.tree.map(lambda now, before: jnp.stack([now, now, before]), exogenous, self.exogenous)
+        return home.thermal_drivers(pairs, powers, jnp.zeros_like(powers))
 
 
 def unadapted(home: Home) -> Adaptation:
@@ -125,9 +152,15 @@ def unadapted(home: Home) -> Adaptation:
     kept, effect = jax.grad(after, argnums=(0, 1))(middle, jnp.zeros_like(middle))
     leak = jnp.abs(1 - kept)
     covariance = jnp.diag((UNCERTAINTY * jnp.stack([REACH * leak, leak, jnp.abs(effect)])) ** 2)
-    zeros = jnp.zeros((2, 3), covariance.dtype)
-    errors = jnp.zeros(2, covariance.dtype)
-    return Adaptation(zeros, jnp.stack([covariance, covariance]), errors, jnp.full((), jnp.nan, errors.dtype))
+    unknown, nothing = jnp.full_like(middle, jnp.nan), jnp.zeros_like(middle)
+    return Adaptation(
+        corrections=jnp.zeros((3, 3), covariance.dtype),
+        covariances=jnp.stack([covariance] * 3),
+        errors=jnp.zeros(3, covariance.dtype),
+        error=nothing,
+        power=unknown,
+        exogenous=Exogenous(unknown, unknown, unknown, unknown, unknown, unknown),
+    )
 
 
 def influences(state: ThermalState, drivers: ThermalDrivers) -> Float[Array, "*slots 3"]:
