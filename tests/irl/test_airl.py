@@ -141,6 +141,7 @@ def test_training_goes_on_from_a_file_to_the_same_result(tmp_path):
         np.testing.assert_array_equal(a, b)
 
 
+@pytest.mark.slow
 def test_seeds_give_different_policies():
     runs = stack([task(seed=0), task(seed=1)])
     weights = training.begin(runs, LEARNER).state.average.network.weights[0]
@@ -171,6 +172,7 @@ def test_minibatches_that_do_not_divide_the_samples_are_refused():
         PPOSettings(rollouts=8, slots=12, minibatches=5)
 
 
+@pytest.mark.slow
 def test_a_diverged_run_is_named():
     runs = stack([task(seed=3), task(seed=8)])
     poisoned = eqx.tree_at(

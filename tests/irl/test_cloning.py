@@ -128,6 +128,7 @@ def test_training_is_a_function_of_the_seed(trained):
     assert not np.allclose(first.network.weights[0], other.network.weights[0])
 
 
+@pytest.mark.slow
 def test_padding_is_never_read():
     runs = stack([ruled_task(price_rule, days=3), ruled_task(price_rule, seed=1, days=5)])
     poisoned = eqx.tree_at(
