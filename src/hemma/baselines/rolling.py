@@ -53,18 +53,19 @@ def rolling_mpc(
         real = _RealHome(*in_double((real_home, exogenous, readings)))
         initial = state = real.home.reset()
         last = first_measured(state)
-        adaptation = unadapted(planning)
+        adaptation = unadapted(planning) if adapts else None
     actions = np.empty((exogenous.slots, 2))
     for slot in range(exogenous.slots):
         planned = min(horizon, exogenous.slots - slot)
         with jax.enable_x64(True):
             index = jnp.asarray(slot)
             before, last = last, real.measured(state, index, last)
-            if adapts and slot > 0:
-                power = jnp.asarray(actions[slot - 1, 1])
-                adaptation = _learned(adaptation, planning, real.readings, index - 1, power, (before, last))
             now, temperature = planning, last.temperature
-            if adapts:
+            if adaptation is not None:
+                if slot > 0:
+                    power = jnp.asarray(actions[slot - 1, 1])
+                    measured = (before, last)
+                    adaptation = _learned(adaptation, planning, real.readings, index - 1, power, measured)
                 now = corrected(planning, adaptation)
                 temperature = _present(adaptation, planning, real.readings, index, temperature)
             thermal = now.thermal_model.initial(temperature)

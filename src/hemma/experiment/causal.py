@@ -10,7 +10,7 @@ from hemma.experiment.demonstrate import INDOOR, Demonstration, Expert
 from hemma.experiment.fingerprint import code, fingerprint
 from hemma.experiment.sight import Sight
 from hemma.experiment.store import Store
-from hemma.home import Trajectory, paper_state
+from hemma.expert.demonstrations import states_and_actions
 from hemma.rl.task import Demonstrated
 
 STAGE = "demonstrate causally"
@@ -46,7 +46,7 @@ def _shown(store: Store, expert: Expert, sight: Sight, days: int) -> dict:
     known = case.first_days(case.training_days)
     ahead = sight.observer.training_forecast(known, period.slots, dt, case.experiment.forecast_horizon)
     path = rolling_mpc(expert.planning_home, case.home, period, ahead)
-    states, actions = transitions(path)
+    states, actions = states_and_actions(path)
     deviation = float(np.mean(case.home.comfort.deviation(states[1:, INDOOR])))
     message = f"{days} days, {len(states) - 1} transitions, mean deviation {deviation:.3f} °C"
     store.progress.finished(STAGE, message)
@@ -57,11 +57,3 @@ def _shown(store: Store, expert: Expert, sight: Sight, days: int) -> dict:
         "actions": actions[:-1].tolist(),
         "next_states": states[1:].tolist(),
     }
-
-
-def transitions(path: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """The paper's states (slots, 7) and the actions (slots, 2) [kW] of a path."""
-    action = path.steps.action
-    return np.asarray(paper_state(path.observations), float), np.stack(
-        [np.asarray(action.battery_power), np.asarray(action.hvac_power)], axis=-1
-    )

@@ -18,7 +18,6 @@ from hemma.experiment.store import Store
 from hemma.experiment.train import Lesson, Trained, train_lesson
 from hemma.rl.ddpg import DDPG
 from hemma.rl.explicit import ExplicitLearning, choose_comfort_price, comfort_prices
-from hemma.rl.scaling import NOTHING
 from hemma.rl.task import explicit_task, stack
 
 STAGE = "comfort price"
@@ -59,10 +58,10 @@ def sweep_comfort_price(expert: Expert, store: Store, method: str) -> Sweep:
     planning_home, home, sight = expert.planning_home, case.home, sight_of(PUPILS[method], expert, store)
     context = sight.learning(_seen_days(case), _seen_days(case))
     task = stack([explicit_task(planning_home, home, seen, price, seed, context) for price, seed in pairs])
-    basis = _basis(sight, STAGE, case.mark, expert.identification.mark, settings)
+    basis = fingerprint(STAGE, case.mark, expert.identification.mark, settings, sight.mark)
     lesson = Lesson(f"{method}-sweep", _algorithm(case.experiment, method), task, basis, sight)
     trained = train_lesson(lesson, store)
-    chosen = _chosen(case, store, lesson, trained, np.asarray(prices))
+    chosen = _chosen(sight, store, lesson, trained, np.asarray(prices))
     return Sweep(method, lesson, trained, tuple(prices), chosen)
 
 
@@ -75,12 +74,8 @@ def explicit_lesson(expert: Expert, store: Store, method: str, comfort_price: fl
     task = stack(
         [explicit_task(planning_home, case.home, days, comfort_price, seed, context) for seed in seeds]
     )
-    basis = _basis(sight, "explicit", case.mark, expert.identification.mark, comfort_price)
+    basis = fingerprint("explicit", case.mark, expert.identification.mark, comfort_price, sight.mark)
     return Lesson(method, _algorithm(case.experiment, method), task, basis, sight)
-
-
-def _basis(sight: Sight, stage: str, *facts: object) -> str:
-    return fingerprint(stage, *facts, *([sight.mark] if sight.mark else []))
 
 
 def _seen_days(case: Case) -> int:
@@ -100,15 +95,15 @@ def _algorithm(experiment: Experiment, method: str) -> ExplicitLearning | DDPG:
     return DDPG(experiment.ddpg)
 
 
-def _chosen(case: Case, store: Store, lesson: Lesson, trained: Trained, prices: np.ndarray) -> float:
+def _chosen(sight: Sight, store: Store, lesson: Lesson, trained: Trained, prices: np.ndarray) -> float:
     """beta_T by the mean regret and deviation of its runs on the training days that they did not see."""
     mark = fingerprint(STAGE, code("rl", "baselines", "expert", "evaluation"), trained.mark)
     product = f"{lesson.label}-choice"
     content = store.kept(product, mark)
     if content is not None:
         return content["chosen"]
-    settings = case.experiment.comfort_price
-    regrets, deviations = _judged(case, lesson, trained)
+    settings = sight.case.experiment.comfort_price
+    regrets, deviations = _judged(sight, trained)
     values = np.asarray(list(dict.fromkeys(prices.tolist())))
     shape = (len(values), settings.seeds)
     mean_regrets, mean_deviations = (x.reshape(shape).mean(axis=1) for x in (regrets, deviations))
@@ -122,15 +117,16 @@ def _chosen(case: Case, store: Store, lesson: Lesson, trained: Trained, prices: 
     return chosen
 
 
-def _judged(case: Case, lesson: Lesson, trained: Trained) -> tuple[np.ndarray, np.ndarray]:
+def _judged(sight: Sight, trained: Trained) -> tuple[np.ndarray, np.ndarray]:
     """Regret at equal comfort [currency] and mean deviation [degC] of each run on the days held out."""
+    case = sight.case
     first = case.first_days(_seen_days(case)).slots
-    days, sight = case.training.window(first, case.training.slots), lesson.sight
-    context = NOTHING if sight is None else sight.held_out(first)
+    days = case.training.window(first, case.training.slots)
     problem = optimum_problem(case.home, days)
     runs = trained.controllers.scaler.centre.shape[0]
     keys = jax.random.split(jax.random.key(0), runs)
-    outcomes = evaluate_stacked(case.home, days, informed(trained.controllers, context), keys)
+    acting = informed(trained.controllers, sight.held_out(first))
+    outcomes = evaluate_stacked(case.home, days, acting, keys)
     regrets = [
         float(np.sum(outcome.cost)) - problem.solve(outcome.total_deviation).cost for outcome in outcomes
     ]

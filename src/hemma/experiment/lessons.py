@@ -103,10 +103,11 @@ def _alike(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation]
     """The lessons, by label, of pupils that see the same."""
     sights = {one.label: sight_of(one.pupil, expert, store) for one in wanted}
     shown = {one.label: _shown(one, expert, store, sights[one.label]) for one in wanted}
-    contexts = {one.days: sights[one.label].learning(one.days) for one in wanted}
+    sight = sights[wanted[0].label]
+    seen = {days: sight.learning(days) for days in {one.days for one in wanted}}
     together = task.stack(
         [
-            demonstrated_task(expert, shown[one.label], seed, contexts[one.days])
+            demonstrated_task(expert, shown[one.label], seed, seen[one.days])
             for one in wanted
             for seed in range(one.seeds)
         ]
@@ -117,7 +118,7 @@ def _alike(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation]
             label=one.label,
             algorithm=one.algorithm,
             task=jax.tree.map(lambda x, part=slice(*part): x[part], together),
-            basis=_basis(case, shown[one.label], sights[one.label]),
+            basis=fingerprint("lesson", case.home, shown[one.label].mark, sights[one.label].mark),
             sight=sights[one.label],
         )
         for one, part in zip(wanted, zip([0, *ends], ends, strict=False), strict=True)
@@ -134,7 +135,3 @@ def demonstrated_task(expert: Expert, shown: Demonstration, seed: int, context: 
     """The task of one run that learns from what ``expert`` showed, on the days on which it did."""
     case, days = expert.case, expert.case.first_days(shown.days)
     return make_task(expert.planning_home, case.home, days, shown.demonstrated, seed, context)
-
-
-def _basis(case: Case, shown: Demonstration, sight: Sight) -> str:
-    return fingerprint("lesson", case.home, shown.mark, *([sight.mark, case.mark] if sight.mark else []))

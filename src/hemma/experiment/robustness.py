@@ -110,7 +110,7 @@ class Trial:
         return [self.expert.mark, learned, planned, self.expert.case.experiment.forecast_horizon]
 
     def _kept(self, fault: Fault, actor: "Trial") -> FaultResults:
-        layers = code("evaluation", "baselines", "expert", "home", "experiment")
+        layers = code("evaluation", "baselines", "expert", "rl", "home", "experiment")
         mark = fingerprint(STAGE, layers, self._marks, self._settings, fault.name, actor._marks)
         product = f"{STAGE}-{fault.name.replace(' ', '-')}"
         content = self.store.kept(product, mark)

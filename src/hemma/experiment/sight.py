@@ -36,8 +36,10 @@ class Sight:
 
     @property
     def mark(self) -> str:
-        """Fingerprint of what is seen besides the paper's state, but for the traces; empty if nothing is."""
-        return "" if self.model == PAPER else fingerprint("sight", code("baselines"), self.model, self.facts)
+        """Fingerprint of what is seen besides the paper's state; empty if nothing is."""
+        if self.model == PAPER:
+            return ""
+        return fingerprint("sight", code("baselines"), self.case.mark, self.model, self.facts)
 
     def learning(self, days: int, known_days: int | None = None) -> Context:
         """In the first ``days`` days of the training period, of which ``known_days`` are known, or all."""

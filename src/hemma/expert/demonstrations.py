@@ -12,8 +12,8 @@ from jaxtyping import Float
 import hemma
 from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
-from hemma.expert.hierarchy import HierarchyRun, HierarchySettings, Progress, run_hierarchy
-from hemma.home import Home, paper_state
+from hemma.expert.hierarchy import HierarchySettings, Progress, run_hierarchy
+from hemma.home import Home, Trajectory, paper_state
 from hemma.home.precision import in_double
 from hemma.types import Exogenous
 
@@ -113,17 +113,15 @@ def demonstrate(
         settings=repr(settings),
         version=hemma.__version__,
     )
-    return recorded(real_home, run, provenance)
+    return recorded(real_home, run.trajectory, provenance)
 
 
-def recorded(home: Home, run: HierarchyRun, provenance: Provenance) -> Demonstrations:
-    """The transitions of a run of the expert on ``home``."""
-    observations, action = run.trajectory.observations, run.trajectory.steps.action
+def recorded(home: Home, path: Trajectory, provenance: Provenance) -> Demonstrations:
+    """The transitions of a path of ``home`` under an expert."""
+    observations, (states, actions) = path.observations, states_and_actions(path)
     with jax.enable_x64(True):
-        states = np.asarray(paper_state(observations))
         battery, energy, dt = in_double((home.battery, observations.battery_energy, home.slot_length))
         low, high = battery.power_limits(energy, dt)
-    actions = np.stack([action.battery_power, action.hvac_power], axis=-1)
     return Demonstrations(
         states=states[:-1],
         actions=actions[:-1],
@@ -132,6 +130,16 @@ def recorded(home: Home, run: HierarchyRun, provenance: Provenance) -> Demonstra
         highest_battery_power=np.asarray(high)[:-1],
         provenance=provenance,
     )
+
+
+def states_and_actions(
+    path: Trajectory,
+) -> tuple[Float[np.ndarray, "slots 7"], Float[np.ndarray, "slots 2"]]:
+    """s and a = (e, h) [kW] of every slot of a path, NumPy float64."""
+    action = path.steps.action
+    with jax.enable_x64(True):
+        states = np.asarray(paper_state(path.observations))
+    return states, np.stack([action.battery_power, action.hvac_power], axis=-1)
 
 
 def save_demonstrations(path: Path, demonstrations: Demonstrations) -> None:

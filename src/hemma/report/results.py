@@ -1,13 +1,13 @@
 """``results.json`` as typed values: the border between a results folder and everything drawn from it."""
 
-import json
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from hemma.errors import HemmaError
 from hemma.report.findings import Aggregate, Improvement, ParetoPoint, RegretSplit
+from hemma.report.reading import read_record
 from hemma.report.records import (
     DemonstrationRuns,
     Identification,
@@ -76,23 +76,10 @@ class Results(Record):
 
 def load_results(folder: Path) -> Results:
     """Read ``results.json`` of a results folder; a ``HemmaError`` names the file and what is wrong in it."""
-    path = folder / RESULTS_FILE
-    expected = f"{path}: expected the results that `hemma reproduce` writes (schema 1)"
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise HemmaError(f"{expected}, there is no such file. Run `hemma reproduce` first") from error
-    except (OSError, ValueError) as error:
-        raise HemmaError(f"{expected}, cannot read it: {error}") from error
-    try:
-        results = Results.model_validate(content)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise HemmaError(
-            f"{expected}; {place}: {first['msg']}, found {str(first['input'])[:60]}. "
-            "Correct it, or run `hemma reproduce` again"
-        ) from error
+    path, expected = folder / RESULTS_FILE, "the results that `hemma reproduce` writes (schema 1)"
+    results = read_record(path, Results, expected, "hemma reproduce")
     if not results.finished:
-        raise HemmaError(f"{expected}, no method has finished in it yet. Let `hemma reproduce` go on")
+        raise HemmaError(
+            f"{path}: expected {expected}, no method has finished in it yet. Let `hemma reproduce` go on"
+        )
     return results

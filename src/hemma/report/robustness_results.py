@@ -1,12 +1,11 @@
 """``robustness.json`` as typed values."""
 
-import json
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from hemma.errors import HemmaError
+from hemma.report.reading import read_record
 from hemma.report.records import Number, Period, Range, Record
 
 ROBUSTNESS_FILE = "robustness.json"
@@ -93,10 +92,5 @@ class Robustness(Record):
 
 def load_robustness(folder: Path) -> Robustness:
     """Read the file of a folder; a ``HemmaError`` names what is wrong in it."""
-    path = folder / ROBUSTNESS_FILE
-    expected = f"{path}: expected what `hemma robustness` writes (schema 1)"
-    try:
-        return Robustness.model_validate(json.loads(path.read_text(encoding="utf-8")))
-    except (OSError, ValidationError, ValueError) as error:
-        reason = str(error).splitlines()[0]
-        raise HemmaError(f"{expected}, cannot read it: {reason}. Run `hemma robustness` again") from error
+    expected = "what `hemma robustness` writes (schema 1)"
+    return read_record(folder / ROBUSTNESS_FILE, Robustness, expected, "hemma robustness")

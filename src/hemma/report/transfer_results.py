@@ -1,12 +1,11 @@
 """``transfer.json`` as typed values, and its table."""
 
-import json
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from hemma.errors import HemmaError
+from hemma.report.reading import read_record
 from hemma.report.records import Method, Number, Period, Range, Record
 
 TRANSFER_FILE = "transfer.json"
@@ -48,10 +47,5 @@ class Transfer(Record):
 
 def load_transfer(folder: Path) -> Transfer:
     """Read the file of a folder; a ``HemmaError`` names what is wrong in it."""
-    path = folder / TRANSFER_FILE
-    expected = f"{path}: expected what `hemma transfer` writes (schema 1)"
-    try:
-        return Transfer.model_validate(json.loads(path.read_text(encoding="utf-8")))
-    except (OSError, ValidationError, ValueError) as error:
-        reason = str(error).splitlines()[0]
-        raise HemmaError(f"{expected}, cannot read it: {reason}. Run `hemma transfer` again") from error
+    expected = "what `hemma transfer` writes (schema 1)"
+    return read_record(folder / TRANSFER_FILE, Transfer, expected, "hemma transfer")
