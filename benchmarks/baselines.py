@@ -12,16 +12,16 @@ from dataclasses import replace
 import equinox as eqx
 import jax
 
-from hemma.baselines.fitted_forecast import fitted
-from hemma.baselines.forecast import Forecaster, Outlook, hourly_means, perfect, yesterday
-from hemma.baselines.joint import joint_hmpc
-from hemma.baselines.optimum import optimum_problem
-from hemma.baselines.rolling import rolling_mpc
-from hemma.baselines.thresholds import fit_thresholds
+from hemma.control.rolling import rolling_mpc
+from hemma.control.thresholds import fit_thresholds
 from hemma.data import load_austin2021
 from hemma.evaluation import EqualComfort, evaluate, measure
+from hemma.forecasting.outlook import Forecaster, Outlook, hourly_means, perfect, yesterday
+from hemma.forecasting.ridge import fitted
 from hemma.home import Controller, Schedule, Trajectory, benchmark_home
 from hemma.identification import Excitation, IdentificationSettings, excite, fit
+from hemma.optimisation.joint import joint_hmpc
+from hemma.optimisation.optimum import optimum_problem
 from hemma.types import Exogenous
 
 HOMES = (1, 4)

@@ -11,9 +11,9 @@ import time
 import jax
 
 from hemma.data import load_austin2021
-from hemma.expert.demonstrations import demonstrate
 from hemma.home import benchmark_home
 from hemma.irl.airl import AdversarialImitation
+from hemma.optimisation.demonstrations import demonstrate
 from hemma.rl import training
 from hemma.rl.task import Demonstrated, Task, make_task, stack
 

@@ -14,18 +14,18 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hemma.baselines.comfort import ComfortHold
-from hemma.baselines.optimum import optimum_problem
+from hemma.control.comfort import ComfortHold
 from hemma.data import AUSTIN2021_HOMES, load_austin2021, split
-from hemma.expert.affine import affine_response
-from hemma.expert.battery import schedule_battery
-from hemma.expert.carry_out import carry_out
-from hemma.expert.hierarchy import run_hierarchy
-from hemma.expert.hvac import plan_hvac
 from hemma.home import ExplicitThermalModel, Home, benchmark_home, replay
 from hemma.home.precision import in_double
 from hemma.identification.excitation import Excitation, excite
 from hemma.identification.fit import IdentificationSettings, fit
+from hemma.optimisation.affine import affine_response
+from hemma.optimisation.battery import schedule_battery
+from hemma.optimisation.carry_out import carry_out
+from hemma.optimisation.hierarchy import run_hierarchy
+from hemma.optimisation.hvac import plan_hvac
+from hemma.optimisation.optimum import optimum_problem
 from hemma.types import Action, Array, Exogenous
 
 

@@ -7,8 +7,8 @@ from synthetic_results import save_results, write_results
 
 from hemma.data import load_austin2021
 from hemma.data.canonical import write_canonical
-from hemma.experiment.keys import outside
-from hemma.experiment.settings import Experiment
+from hemma.settings.experiment import Experiment
+from hemma.settings.keys import outside
 
 
 @pytest.fixture

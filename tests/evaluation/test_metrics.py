@@ -8,8 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hemma.evaluation import EqualComfort, Outcome, evaluate, measure, write_exogenous, write_schedule
+from hemma.evaluation import EqualComfort, Outcome, evaluate, measure
 from hemma.home import Home
+from hemma.results.schedules import write_exogenous, write_schedule
 from hemma.types import Action, Exogenous
 
 

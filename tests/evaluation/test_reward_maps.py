@@ -19,7 +19,7 @@ from hemma.evaluation.reward_maps import (
 from hemma.home import Home, HomeState, observe, paper_state
 from hemma.irl.learned_reward import LearnedReward
 from hemma.irl.reward import ShapedReward
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.scaling import StateScaler
 from hemma.types import Exogenous
 
 PRICE, INDOOR = 5, 4

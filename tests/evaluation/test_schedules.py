@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from hemma.errors import HemmaError
-from hemma.evaluation import Outcome, evaluate, read_schedule, write_schedule
+from hemma.evaluation import Outcome, evaluate
 from hemma.home import Home, Schedule
+from hemma.results.schedules import read_schedule, write_schedule
 from hemma.types import Action, Exogenous
 
 NUMBERS = arrays(np.float64, 6, elements=st.floats(-1e6, 1e6))

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from hemma.evaluation import summarise
-from hemma.experiment.comparisons import aggregate, improvements
+from hemma.results.comparisons import aggregate, improvements
 
 T_2_DEGREES = 4.302653
 """t_{0.975} with 2 degrees of freedom."""

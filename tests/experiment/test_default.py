@@ -6,11 +6,11 @@ import pytest
 from tiny_experiment import Watching, tiny_job
 
 from hemma.errors import HemmaError
-from hemma.experiment.case import make_case
-from hemma.experiment.default import preferred
-from hemma.experiment.folds import training_folds
-from hemma.experiment.settings import DefaultController
-from hemma.experiment.store import Store
+from hemma.results.store import Store
+from hemma.settings.experiment import DefaultController
+from hemma.stages.case import make_case
+from hemma.stages.default import preferred
+from hemma.stages.folds import training_folds
 
 
 @pytest.fixture

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import hemma
-from hemma.experiment.fingerprint import code, fingerprint, source_digest
-from hemma.experiment.settings import Experiment
 from hemma.home import Battery, Home
+from hemma.results.fingerprint import code, fingerprint, source_digest
+from hemma.settings.experiment import Experiment
 
 
 def test_equal_content_has_an_equal_fingerprint():

@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 
 from hemma.evaluation import Metrics
-from hemma.experiment.document import home_document
-from hemma.experiment.ledger import is_part_of, open_ledger
-from hemma.experiment.progress import Silence
-from hemma.experiment.results import Head, HomeResults, MethodRegret, MethodResults, ParetoPoint, Period, Run
+from hemma.results.document import home_document
+from hemma.results.found import Head, HomeResults, MethodRegret, MethodResults, ParetoPoint, Period, Run
+from hemma.results.ledger import is_part_of, open_ledger
+from hemma.results.progress import Silence
 
 
 def run(seed=None, cost=1.0, schedule="schedules/a/Rule.csv", curve=None):

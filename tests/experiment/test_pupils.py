@@ -6,27 +6,27 @@ import numpy as np
 import pytest
 from tiny_experiment import Watching, every_method, tiny_job
 
-from hemma.baselines.forecast import hourly_means
-from hemma.baselines.observations import MODELS, Observer
-from hemma.baselines.shape_forecast import ShapeForecast
 from hemma.checkpoint import load_header, load_shapes
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
-from hemma.experiment.case import make_case
-from hemma.experiment.causal import causal_demonstration
-from hemma.experiment.demonstrate import Expert
-from hemma.experiment.identify import identify
-from hemma.experiment.lessons import Imitation, lessons
-from hemma.experiment.play import play
-from hemma.experiment.pupils import LEARNED, PUPILS
 from hemma.experiment.run import Stage, run
-from hemma.experiment.settings_file import read_settings
-from hemma.experiment.sight import Sight
-from hemma.experiment.store import Store
-from hemma.experiment.train import train_lesson
+from hemma.forecasting.observations import MODELS, Observer
+from hemma.forecasting.outlook import hourly_means
+from hemma.forecasting.shape import ShapeForecast
 from hemma.irl.cloning import BehaviourCloning, CloningSettings
+from hemma.methods.pupils import LEARNED, PUPILS
 from hemma.report.methods import grouped, in_order, meaning_of, plain
-from hemma.report.results import load_results
+from hemma.results.results import load_results
+from hemma.results.store import Store
+from hemma.settings.file import read_settings
+from hemma.stages.case import make_case
+from hemma.stages.causal import causal_demonstration
+from hemma.stages.demonstrate import Expert
+from hemma.stages.identify import identify
+from hemma.stages.lessons import Imitation, lessons
+from hemma.stages.play import play
+from hemma.stages.sight import Sight
+from hemma.stages.train import train_lesson
 
 HOME = "austin2021-2"
 SEEING = ("BC", "BC published", "PPO past")

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hemma.evaluation import Outcome
-from hemma.experiment.recommend import daily_costs, recommend
+from hemma.studies.recommendation.recommend import daily_costs, recommend
 
 COMFORTABLE = {"Rule": 0.0, "thresholds": 0.0, "default": 0.0}
 

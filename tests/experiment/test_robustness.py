@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tiny_experiment import Watching, tiny_experiment, tiny_job
 
-from hemma.experiment.fault_run import run_faults
-from hemma.experiment.faults import FaultSettings, faults
-from hemma.report.robustness import met, robustness_markdown, robustness_rows, shown
-from hemma.report.robustness_results import load_robustness
+from hemma.studies.robustness.faults import FaultSettings, faults
+from hemma.studies.robustness.records import load_robustness
+from hemma.studies.robustness.report import met, robustness_markdown, robustness_rows, shown
+from hemma.studies.robustness.run import run_faults
 
 HOME = "austin2021-2"
 FEW = ("nothing", "disturbed building", "worn battery", "no thermometer", "no battery level")
@@ -29,7 +29,7 @@ def robust(finished, tmp_path_factory):
     folder = tmp_path_factory.mktemp("robust") / "results"
     shutil.copytree(finished[0], folder)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("hemma.experiment.robustness.faults", some(FEW))
+        patch.setattr("hemma.studies.robustness.trial.faults", some(FEW))
         yield folder, run_faults(tiny_job(folder))
 
 
@@ -95,7 +95,7 @@ def test_the_table_has_a_row_for_each_fault_and_the_figure_is_drawn(robust):
 
 def test_other_magnitudes_give_other_results(robust, monkeypatch):
     folder, content = robust
-    monkeypatch.setattr("hemma.experiment.robustness.faults", some(["worn battery"]))
+    monkeypatch.setattr("hemma.studies.robustness.trial.faults", some(["worn battery"]))
     harder = replace(tiny_experiment(), faults=FaultSettings(efficiency=0.6))
     [other] = run_faults(tiny_job(folder, harder))["homes"][HOME]["faults"]
     usual = content["homes"][HOME]["faults"][FEW.index("worn battery")]

@@ -5,10 +5,10 @@ import pytest
 
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
-from hemma.experiment import scenes
-from hemma.experiment.faults import FaultSettings, faults
-from hemma.experiment.scenes import scene
 from hemma.home import benchmark_home
+from hemma.studies.robustness import scenes
+from hemma.studies.robustness.faults import FaultSettings, faults
+from hemma.studies.robustness.scenes import scene
 
 PERIOD = load_austin2021(2).window(0, 24 * 40).exogenous
 BEFORE = scene(benchmark_home(), PERIOD)

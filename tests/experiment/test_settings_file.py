@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hemma.errors import HemmaError
-from hemma.experiment.keys import outside
-from hemma.experiment.settings import DataEfficiency, Experiment, quick
-from hemma.experiment.settings_file import read_settings, settings_text
 from hemma.home import Battery, ComfortBand, Hvac
+from hemma.settings.experiment import DataEfficiency, Experiment, quick
+from hemma.settings.file import read_settings, settings_text
+from hemma.settings.keys import outside
 
 
 def written(tmp_path, text):

@@ -9,14 +9,14 @@ from tiny_experiment import Watching, tiny_job
 
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
-from hemma.experiment.case import make_case
-from hemma.experiment.fault_run import measure_faults, run_stored_faults
-from hemma.experiment.faults import faults
-from hemma.experiment.robustness import FOREIGN, FaultRun, Trial
-from hemma.experiment.scenes import scene
-from hemma.experiment.store import Store
-from hemma.experiment.stored import stored_job, stored_trial
-from hemma.report.robustness_results import load_robustness
+from hemma.results.store import Store
+from hemma.stages.case import make_case
+from hemma.studies.robustness.faults import faults
+from hemma.studies.robustness.records import load_robustness
+from hemma.studies.robustness.run import measure_faults, run_stored_faults
+from hemma.studies.robustness.scenes import scene
+from hemma.studies.robustness.stored import stored_job, stored_trial
+from hemma.studies.robustness.trial import FOREIGN, FaultRun, Trial
 
 HOME = "austin2021-2"
 COMMAND = "hemma robustness --for-tests"
@@ -30,8 +30,8 @@ def week(experiment, homes):
 @pytest.fixture(autouse=True, scope="module")
 def _short():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("hemma.experiment.stored.embedded_homes", week)
-        patch.setattr("hemma.experiment.robustness.faults", lambda settings: faults(settings)[:1])
+        patch.setattr("hemma.studies.robustness.stored.embedded_homes", week)
+        patch.setattr("hemma.studies.robustness.trial.faults", lambda settings: faults(settings)[:1])
         yield
 
 

@@ -11,11 +11,11 @@ from tiny_experiment import Watching, tiny_experiment
 from hemma.checkpoint import load_header
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
-from hemma.experiment.places import CHANGES, places
-from hemma.experiment.settings import Experiment
-from hemma.experiment.transfer import GAIL, POLICY, TransferJob, transfer
 from hemma.irl.learned_reward import load_rewards
 from hemma.irl.reward import ShapedReward
+from hemma.settings.experiment import Experiment
+from hemma.studies.transfer.changes import CHANGES, places
+from hemma.studies.transfer.run import GAIL, POLICY, TransferJob, transfer
 
 BY_NAME = {change.name: change for change in CHANGES}
 FEW = tuple(BY_NAME[name] for name in ("unchanged", "twice the battery"))

@@ -4,9 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from hemma.data import load_austin2021
-from hemma.experiment.progress import Silence
 from hemma.experiment.run import Job
-from hemma.experiment.settings import LEARNED, ComfortPrices, DataEfficiency, Experiment, ParetoSettings
+from hemma.results.progress import Silence
+from hemma.settings.experiment import LEARNED, ComfortPrices, DataEfficiency, Experiment, ParetoSettings
 
 
 def tiny_experiment(iterations=50):

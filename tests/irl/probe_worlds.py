@@ -9,7 +9,7 @@ from hemma.home import Home, observe, paper_state
 from hemma.irl.reward_features import LinearReward, RewardFeatures
 from hemma.rl.environment import Transitions
 from hemma.rl.improvement import Effort, Proximal, standard
-from hemma.rl.policy import PolicyController
+from hemma.rl.policies.policy import PolicyController
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import Demonstrated, make_task
 from hemma.types import Action, Exogenous

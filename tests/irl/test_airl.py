@@ -18,7 +18,7 @@ from hemma.irl.reward import ImitationScore, ShapedReward
 from hemma.rl import training
 from hemma.rl.environment import Transitions
 from hemma.rl.improvement import Proximal
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import Expert, make_task, stack
 

@@ -14,8 +14,8 @@ from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.irl.cloning import BehaviourCloning, CloningSettings, cloning_loss, residual, split_days
 from hemma.rl import training
-from hemma.rl.actions import to_power
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.actions import to_power
+from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.task import stack
 
 SMALL = CloningSettings(iterations=50, batch=64, hidden=(16,))

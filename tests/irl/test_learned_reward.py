@@ -12,7 +12,7 @@ from hemma.errors import HemmaError
 from hemma.irl.learned_reward import LearnedReward, load_rewards, save_rewards
 from hemma.irl.reoptimise import ground
 from hemma.irl.reward import ShapedReward
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.scaling import StateScaler
 
 
 def learned(runs=3, hidden=(7, 5)):

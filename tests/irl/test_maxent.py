@@ -27,7 +27,7 @@ from hemma.irl.maxent import MaxEntSettings, compare, linear_maxent, neural_maxe
 from hemma.irl.maxent_rewards import Comparison, LearnedWeights, LinearMaxEnt, NeuralMaxEnt
 from hemma.irl.reward_features import LinearReward, RewardFeatures, demonstrated_scale, reward_features
 from hemma.rl import training
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.task import stack
 
 SMALL = MaxEntSettings(iterations=50, windows=4, slots=12, neural=NeuralMaxEnt(hidden=(16,), steps=2))

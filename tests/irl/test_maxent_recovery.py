@@ -22,7 +22,7 @@ from hemma.home import Home
 from hemma.irl.maxent import MaxEntSettings, linear_maxent, neural_maxent
 from hemma.irl.maxent_rewards import LinearMaxEnt
 from hemma.rl import training
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.task import stack
 
 pytestmark = pytest.mark.slow

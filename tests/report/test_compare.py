@@ -12,7 +12,7 @@ from hemma.errors import HemmaError
 from hemma.report.compare import compare
 from hemma.report.comparison_files import comparison_document, write_comparison
 from hemma.report.comparison_page import comparison_page
-from hemma.report.results import load_results
+from hemma.results.results import load_results
 
 HOMES = ("home-1", "home-2")
 METHODS = ("HA-1", "Rule", "optimum")

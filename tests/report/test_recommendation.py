@@ -1,7 +1,7 @@
 """The recommendation in words: what is taken, what it cost, and why not another."""
 
 from hemma.report.recommendation import recommendation_rows, recommendation_section, recommendation_sentence
-from hemma.report.results import HomeResults
+from hemma.results.results import HomeResults
 
 JUDGED = [
     {"method": "Rule", "daily_cost": 2.0, "excess": 1.0, "standard_error": 0.1},

@@ -9,15 +9,15 @@ from synthetic_results import save_results, write_results
 
 from hemma.report import write_report
 from hemma.report.canvas import drawing_style, new_figure
-from hemma.report.findings import Improvement, PairedDifference, RegretSplit
 from hemma.report.labels import Label, place_labels
 from hemma.report.overview import differences_of, worst_over_homes
 from hemma.report.panels_homes import homes_figure
 from hemma.report.panels_improvement import comparison_of, improvement_figure
 from hemma.report.panels_pareto import pareto_figure, sweeps_of
 from hemma.report.panels_regret import regret_figure
-from hemma.report.results import HomeResults, Results, load_results
 from hemma.report.rows import method_rows
+from hemma.results.findings import Improvement, PairedDifference, RegretSplit
+from hemma.results.results import HomeResults, Results, load_results
 
 REGRET_BARS = 3
 

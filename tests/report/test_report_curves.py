@@ -6,8 +6,8 @@ import pytest
 from hemma.report.canvas import drawing_style, save
 from hemma.report.panels_curves import COST, DEVIATION, learning_figure, spread_of
 from hemma.report.panels_diagnostics import diagnostics_figure, diagnostics_of
-from hemma.report.results import load_results
 from hemma.report.series import SeriesReader, TrainingCurve
+from hemma.results.results import load_results
 
 
 def _curve(iterations: list[float], **quantities: list[float]) -> TrainingCurve:

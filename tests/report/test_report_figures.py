@@ -17,8 +17,8 @@ from hemma.report.panels_curves import thinned
 from hemma.report.panels_demonstrations import draw_cost_by_length, draw_deviation_by_length
 from hemma.report.panels_methods import draw_costs, draw_deviations
 from hemma.report.panels_time import draw_battery_level, draw_indoor_temperature
-from hemma.report.results import HomeResults, load_results
 from hemma.report.series import SeriesReader
+from hemma.results.results import HomeResults, load_results
 
 NAMES = (
     "results", "cost-by-demonstrations", "deviation-by-demonstrations", "energy-cost",

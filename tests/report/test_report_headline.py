@@ -7,7 +7,7 @@ import pytest
 from synthetic_results import save_results
 
 from hemma.report.headline import Headline, headline
-from hemma.report.results import load_results
+from hemma.results.results import load_results
 
 
 def _said(folder: Path, content: dict) -> Headline:

@@ -10,9 +10,9 @@ from hemma.report import write_report
 from hemma.report.canvas import drawing_style
 from hemma.report.panels_time import draw_indoor_temperature
 from hemma.report.panels_traces import traces_figure
-from hemma.report.results import HomeResults, load_results
 from hemma.report.series import SeriesReader
 from hemma.report.week import Week, read_week
+from hemma.results.results import HomeResults, load_results
 
 NAME = "austin2021-1"
 

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from hemma.errors import HemmaError
-from hemma.report.transfer import paired_lines, transfer_rows, write_transfer_report
-from hemma.report.transfer_results import load_transfer
+from hemma.studies.transfer.records import load_transfer
+from hemma.studies.transfer.report import paired_lines, transfer_rows, write_transfer_report
 
 
 def method(share):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from hemma.home import Battery
 from hemma.rl.carry_over import carried_over
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.scaling import StateScaler
 
 SCALER = StateScaler(
     jnp.asarray([1.0, 0.5, 2.0, 30.0, 24.0, 0.1]), jnp.asarray([1.0, 0.3, 1.5, 4.0, 1.0, 0.05])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hemma.errors import HemmaError
-from hemma.rl.committee import Committee, CommitteePolicy
+from hemma.rl.policies.committee import Committee, CommitteePolicy
 from hemma.rl.task import Task
 
 TASK = object.__new__(Task)

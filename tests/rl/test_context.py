@@ -15,13 +15,13 @@ from hemma.irl.cloning import BehaviourCloning, CloningSettings
 from hemma.irl.maxent import MaxEntSettings, linear_maxent, neural_maxent
 from hemma.irl.reward import ImitationScore
 from hemma.rl import training
-from hemma.rl.committee import Committee
 from hemma.rl.ddpg import DDPG, DDPGSettings
 from hemma.rl.explicit import ExplicitLearning, ExplicitSettings
 from hemma.rl.improvement import Proximal
-from hemma.rl.policy import InformedController
+from hemma.rl.policies.committee import Committee
+from hemma.rl.policies.policy import InformedController
+from hemma.rl.policies.scaling import NOTHING, PLAIN, Context, StateScaler
 from hemma.rl.ppo import PPOSettings
-from hemma.rl.scaling import NOTHING, PLAIN, Context, StateScaler
 from hemma.rl.task import Demonstrated, explicit_task, make_task, stack
 from hemma.types import Action
 

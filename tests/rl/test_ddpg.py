@@ -21,8 +21,8 @@ from hemma.rl.ddpg import (
     followed,
 )
 from hemma.rl.environment import Transitions
-from hemma.rl.memory import Experience, empty_memory
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.replay_buffer import Experience, empty_memory
 
 LEARNER = DDPG(
     DDPGSettings(

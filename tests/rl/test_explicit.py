@@ -20,8 +20,8 @@ from hemma.rl.explicit import (
     scaled_reward,
     usual_price,
 )
-from hemma.rl.exploration import Exploration
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.exploration import Exploration
+from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExplicitReward, explicit_task, stack
 from hemma.types import Costs

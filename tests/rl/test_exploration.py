@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hemma.errors import HemmaError
-from hemma.rl.exploration import Exploration, falling
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.exploration import Exploration, falling
+from hemma.rl.policies.policy import GaussianPolicy
 
 
 def test_deviation_shrinks_geometrically_and_then_stays():

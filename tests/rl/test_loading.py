@@ -8,10 +8,10 @@ import pytest
 from hemma.checkpoint import save_tree
 from hemma.errors import HemmaError
 from hemma.home import Home
-from hemma.rl.committee import CommitteePolicy
 from hemma.rl.loading import load_controllers
-from hemma.rl.policy import GaussianPolicy, PolicyController
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.committee import CommitteePolicy
+from hemma.rl.policies.policy import GaussianPolicy, PolicyController
+from hemma.rl.policies.scaling import StateScaler
 
 
 def filled(tree, axes):

@@ -10,9 +10,9 @@ from scipy.stats import norm
 from hemma.home import Home
 from hemma.rl import ppo
 from hemma.rl.environment import Environment, collect
-from hemma.rl.policy import GaussianPolicy, log_density
+from hemma.rl.policies.policy import GaussianPolicy, log_density
+from hemma.rl.policies.scaling import fit_scaler
 from hemma.rl.ppo import Objective, PPOSettings, advantages
-from hemma.rl.scaling import fit_scaler
 from hemma.types import Exogenous
 
 SETTINGS = PPOSettings(rollouts=32, slots=24, hidden=(32,), learning_rate=3e-3, value_learning_rate=3e-3)

@@ -3,7 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 
-from hemma.rl.scaling import fit_scaler
+from hemma.rl.policies.scaling import fit_scaler
 
 
 def states(rng, samples=400):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hemma.report.results import Results
+    from hemma.results.results import Results
 
 
 def print_aggregate(console: "Console", results: "Results") -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
-    from hemma.experiment.progress import Progress
+    from hemma.results.progress import Progress
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it."""
@@ -102,7 +102,7 @@ def print_recommendations(content: Any) -> None:
     from rich.table import Table
 
     from hemma.report.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
-    from hemma.report.results import HomeResults
+    from hemma.results.results import HomeResults
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
     for name, entry in content["homes"].items():
@@ -126,7 +126,7 @@ def print_table(folder: Path) -> None:
 
     from hemma.cli.aggregate import print_aggregate
     from hemma.report import results_table
-    from hemma.report.results import load_results
+    from hemma.results.results import load_results
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH)
     results = load_results(folder)

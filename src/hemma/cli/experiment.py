@@ -14,7 +14,7 @@ from hemma.cli.homes import chosen_homes
 
 if TYPE_CHECKING:
     from hemma.experiment.run import Job
-    from hemma.experiment.settings import Experiment
+    from hemma.settings.experiment import Experiment
 
 Traces = Annotated[
     Path | None,
@@ -96,8 +96,8 @@ def report(folder: Folder = OUT, week: Week = 1) -> None:
 
 def settings(file: Settings = None) -> None:
     """Print all settings with their explanations, as a file for --settings."""
-    from hemma.experiment.settings import Experiment
-    from hemma.experiment.settings_file import read_settings, settings_text
+    from hemma.settings.experiment import Experiment
+    from hemma.settings.file import read_settings, settings_text
 
     typer.echo(settings_text(Experiment() if file is None else read_settings(file)), nl=False)
 
@@ -141,8 +141,8 @@ def _run(verb: str, request: Request) -> Any:
 def job_of(request: Request) -> "Job":
     """The homes and settings that were asked for."""
     from hemma.errors import HemmaError
-    from hemma.experiment.load import embedded_homes, own_home
     from hemma.experiment.run import Job
+    from hemma.stages.load import embedded_homes, own_home
 
     if request.traces is not None and request.homes:
         raise HemmaError("expected --traces FILE or --home N (--homes LIST), got both; leave one of them out")
@@ -160,8 +160,8 @@ def chosen_experiment(file: Path | None, seeds: int | None, is_quick: bool) -> "
     from dataclasses import replace
 
     from hemma.errors import HemmaError
-    from hemma.experiment.settings import Experiment, quick
-    from hemma.experiment.settings_file import read_settings
+    from hemma.settings.experiment import Experiment, quick
+    from hemma.settings.file import read_settings
 
     experiment = Experiment() if file is None else read_settings(file)
     experiment = quick(experiment) if is_quick else experiment

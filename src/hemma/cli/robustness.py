@@ -68,7 +68,7 @@ def robustness(  # noqa: PLR0913
 
 def _trained(request: Request) -> Any:
     """What was asked for; trains what the folder does not hold yet."""
-    from hemma.experiment.fault_run import run_faults
+    from hemma.studies.robustness.run import run_faults
 
     job = job_of(request)
     keep_compiled_code()
@@ -79,7 +79,7 @@ def _trained(request: Request) -> Any:
 def _as_it_is(folder: Path, request: Request) -> Any:
     """What the folder holds."""
     from hemma.errors import HemmaError
-    from hemma.experiment.fault_run import run_stored_faults
+    from hemma.studies.robustness.run import run_stored_faults
 
     if request != Request(request.traces, (), None, None, OUT, None, False):
         raise HemmaError(
@@ -96,8 +96,8 @@ def _print_table(folder: Path, every: bool) -> None:
     from rich.table import Table
 
     from hemma.report.numbers import fine, percent
-    from hemma.report.robustness import TABLE_FILE, met, shown
-    from hemma.report.robustness_results import ROBUSTNESS_FILE, load_robustness
+    from hemma.studies.robustness.records import ROBUSTNESS_FILE, load_robustness
+    from hemma.studies.robustness.report import TABLE_FILE, met, shown
 
     found = load_robustness(folder)
     methods = [name for name in shown(found) if every or name in PRINTED]

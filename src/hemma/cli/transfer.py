@@ -12,7 +12,7 @@ from hemma.cli.console import WIDTH, going_on_later, print_json, show_progress
 from hemma.cli.experiment import Quick, Seeds, Settings, chosen_experiment
 
 if TYPE_CHECKING:
-    from hemma.experiment.transfer import TransferJob
+    from hemma.studies.transfer.run import TransferJob
 
 Home = Annotated[int, typer.Option("--home", help="Embedded home, 1 to 6.")]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the test's results.")]
@@ -35,7 +35,7 @@ def transfer(
 ) -> None:
     """Learn a reward in one home, train on it again in changed ones; draw what it wants."""
     with going_on_later():
-        from hemma.experiment.transfer import transfer as run
+        from hemma.studies.transfer.run import transfer as run
 
         job = _job(home, chosen_experiment(settings, seeds, quick), out)
         keep_compiled_code()
@@ -48,8 +48,8 @@ def transfer(
 
 
 def _job(home: int, experiment, folder: Path) -> "TransferJob":
-    from hemma.experiment.load import embedded_homes
-    from hemma.experiment.transfer import TransferJob
+    from hemma.stages.load import embedded_homes
+    from hemma.studies.transfer.run import TransferJob
 
     [traces] = embedded_homes(experiment, (home,))
     return TransferJob(experiment, traces, folder, command=shlex.join(["hemma", *sys.argv[1:]]))
@@ -59,8 +59,8 @@ def _print_tables(folder: Path) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hemma.report.transfer import HEADINGS, TABLE_FILE, paired_lines, transfer_rows
-    from hemma.report.transfer_results import TRANSFER_FILE, load_transfer
+    from hemma.studies.transfer.records import TRANSFER_FILE, load_transfer
+    from hemma.studies.transfer.report import HEADINGS, TABLE_FILE, paired_lines, transfer_rows
 
     found = load_transfer(folder)
     console = Console(width=None if sys.stdout.isatty() else WIDTH)

@@ -4,14 +4,6 @@ from hemma.evaluation.improvement import Improvement, Pair, Sample, probability_
 from hemma.evaluation.metrics import NEGLIGIBLE, EqualComfort, Metrics, measure
 from hemma.evaluation.regret import RegretSplit, regret, split_regret
 from hemma.evaluation.replay import Outcome, evaluate, evaluate_stacked
-from hemma.evaluation.schedules import (
-    EXOGENOUS_COLUMNS,
-    SCHEDULE_COLUMNS,
-    SavedSchedule,
-    read_schedule,
-    write_exogenous,
-    write_schedule,
-)
 from hemma.evaluation.statistics import (
     Interval,
     IntervalKind,
@@ -23,9 +15,7 @@ from hemma.evaluation.statistics import (
 )
 
 __all__ = [
-    "EXOGENOUS_COLUMNS",
     "NEGLIGIBLE",
-    "SCHEDULE_COLUMNS",
     "EqualComfort",
     "Improvement",
     "Interval",
@@ -35,7 +25,6 @@ __all__ = [
     "Pair",
     "RegretSplit",
     "Sample",
-    "SavedSchedule",
     "Summary",
     "evaluate",
     "evaluate_stacked",
@@ -43,11 +32,8 @@ __all__ = [
     "interval_kind",
     "measure",
     "probability_of_improvement",
-    "read_schedule",
     "regret",
     "split_regret",
     "summarise",
     "summarise_homes",
-    "write_exogenous",
-    "write_schedule",
 ]

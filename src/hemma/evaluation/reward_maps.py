@@ -13,7 +13,7 @@ from hemma.errors import HemmaError
 from hemma.home import Home, HomeState, observe, paper_state
 from hemma.irl.learned_reward import LearnedReward
 from hemma.irl.reoptimise import ground
-from hemma.rl.actions import to_power
+from hemma.rl.policies.actions import to_power
 from hemma.types import Array, Exogenous
 
 FRACTIONS = np.linspace(-1.0, 1.0, 81)

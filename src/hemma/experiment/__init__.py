@@ -1,10 +1,10 @@
 """The main job: one frozen experiment and some traces in, one results folder out."""
 
-from hemma.experiment.load import embedded_homes, own_home
-from hemma.experiment.progress import Progress, Silence
 from hemma.experiment.run import Job, Stage, run
-from hemma.experiment.settings import DataEfficiency, Experiment, quick
-from hemma.experiment.settings_file import read_settings, settings_text
+from hemma.results.progress import Progress, Silence
+from hemma.settings.experiment import DataEfficiency, Experiment, quick
+from hemma.settings.file import read_settings, settings_text
+from hemma.stages.load import embedded_homes, own_home
 
 __all__ = [
     "DataEfficiency",

@@ -5,23 +5,23 @@ from dataclasses import dataclass, replace
 from enum import IntEnum, auto
 from functools import partial
 
-from hemma.experiment.bands import Bands, bands_lesson
-from hemma.experiment.case import Case, empty_results
-from hemma.experiment.default import choose_forecast
-from hemma.experiment.demonstrate import Expert
-from hemma.experiment.explicit import Sweep, explicit_lesson, explicit_methods, sweep_comfort_price
-from hemma.experiment.identify import identify
-from hemma.experiment.judge import Judge
-from hemma.experiment.ledger import Ledger
-from hemma.experiment.lessons import ANY_LENGTH, imitations, lessons
-from hemma.experiment.pareto import Pareto
-from hemma.experiment.play import play
-from hemma.experiment.recommend import Tryout
-from hemma.experiment.references import References, plain_optimum
-from hemma.experiment.regrets import split_regrets
-from hemma.experiment.results import HomeResults, MethodResults, Run
-from hemma.experiment.store import Store
-from hemma.experiment.train import Lesson, Trained, train_lesson, train_lessons
+from hemma.results.found import HomeResults, MethodResults, Run
+from hemma.results.ledger import Ledger
+from hemma.results.store import Store
+from hemma.stages.case import Case, empty_results
+from hemma.stages.default import choose_forecast
+from hemma.stages.demonstrate import Expert
+from hemma.stages.explicit import Sweep, explicit_lesson, explicit_methods, sweep_comfort_price
+from hemma.stages.identify import identify
+from hemma.stages.judge import Judge
+from hemma.stages.lessons import ANY_LENGTH, imitations, lessons
+from hemma.stages.play import play
+from hemma.stages.references import References, plain_optimum
+from hemma.stages.train import Lesson, Trained, train_lesson, train_lessons
+from hemma.studies.pareto.bands import Bands, bands_lesson
+from hemma.studies.pareto.pareto import Pareto
+from hemma.studies.recommendation.recommend import Tryout
+from hemma.studies.regret.split import split_regrets
 
 LENGTHS = ("HA-1", "HA-2", ANY_LENGTH)
 """One method at several lengths of the demonstrations."""

@@ -1,36 +1,18 @@
 """The main job, stage by stage: traces in, one results folder out."""
 
-import os
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hemma.data import Traces
-from hemma.errors import HemmaError
-from hemma.experiment.case import make_case
 from hemma.experiment.home_run import HomeRun, Stage
-from hemma.experiment.keys import outside
-from hemma.experiment.ledger import open_ledger
-from hemma.experiment.progress import Progress, Silence
-from hemma.experiment.results import Head
-from hemma.experiment.settings import Experiment
-from hemma.experiment.store import Store
+from hemma.results.found import Head
+from hemma.results.ledger import open_ledger
+from hemma.results.progress import Progress, Silence
+from hemma.results.store import Store
+from hemma.settings.keys import outside
+from hemma.stages.case import make_case
+from hemma.stages.job import Job, require_different_names, require_writable
 
 __all__ = ["Job", "Stage", "run"]
-
-
-@dataclass(frozen=True)
-class Job:
-    """What to run, on what, and where the results go."""
-
-    experiment: Experiment
-    homes: tuple[Traces, ...]
-    folder: Path
-    test_from: str | None = None
-    """Start of the test period; the last 31 days by default."""
-    command: str = "hemma reproduce"
-    """What was typed, for the results file."""
 
 
 def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) -> Any:
@@ -51,26 +33,6 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     if last is Stage.REPORT:
         _report(job.folder, progress)
     return ledger.content
-
-
-def require_different_names(homes: Sequence[Traces]) -> None:
-    """Refuse homes that would overwrite each other's results."""
-    names = [home.name for home in homes]
-    for name in names:
-        if names.count(name) > 1:
-            raise HemmaError(f"expected homes with different names, got {name} twice; name each of them once")
-
-
-def require_writable(folder: Path) -> None:
-    """Find out before hours of work that there is nowhere to put them."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise HemmaError(
-            f"{folder}: expected a results folder, cannot make it: {error.strerror}. Choose another: --out"
-        ) from error
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise HemmaError(f"{folder}: expected a results folder that may be written. Choose another: --out")
 
 
 def _report(folder: Path, progress: Progress) -> None:

@@ -14,9 +14,9 @@ from hemma.irl.discriminator import cross_entropy, gradient_penalty
 from hemma.irl.reward import AbstractHead, ShapedReward
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Rollout, Transitions
-from hemma.rl.exploration import Exploration, falling
 from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
-from hemma.rl.policy import GaussianPolicy, log_density
+from hemma.rl.policies.exploration import Exploration, falling
+from hemma.rl.policies.policy import GaussianPolicy, log_density
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array

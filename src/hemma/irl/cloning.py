@@ -11,8 +11,8 @@ from jaxtyping import Bool, Float, Int
 from hemma.home.checks import require
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions
-from hemma.rl.exploration import falling
-from hemma.rl.policy import ACTIONS, GaussianPolicy
+from hemma.rl.policies.exploration import falling
+from hemma.rl.policies.policy import ACTIONS, GaussianPolicy
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array

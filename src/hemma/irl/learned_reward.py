@@ -13,8 +13,8 @@ from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.irl.reward import ShapedReward
 from hemma.rl.environment import Transitions
-from hemma.rl.policy import FEATURES
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.policy import FEATURES
+from hemma.rl.policies.scaling import StateScaler
 from hemma.types import Array
 
 KIND = "learned reward"
@@ -26,7 +26,7 @@ class LearnedReward(eqx.Module):
     Where several agents learned in a run, the rewards of a run lie along a second axis of the head.
 
     It reads states in their units through its scaler, and actions as fractions of what is feasible
-    (``hemma.rl.actions``): which powers these are is a matter of the home it is asked about.
+    (``hemma.rl.policies.actions``): which powers these are is a matter of the home it is asked about.
     """
 
     head: ShapedReward

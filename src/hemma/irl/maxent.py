@@ -17,9 +17,9 @@ from hemma.home.checks import require
 from hemma.irl.maxent_rewards import Comparison, LinearMaxEnt, NeuralMaxEnt, RewardLearner
 from hemma.irl.reward_features import ENERGY, INDOOR
 from hemma.rl.environment import Environment, Transitions
-from hemma.rl.exploration import Exploration, falling
 from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.exploration import Exploration, falling
+from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array

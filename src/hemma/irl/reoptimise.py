@@ -15,9 +15,9 @@ from hemma.irl.reward import ShapedReward
 from hemma.rl.environment import Rollout, Transitions
 from hemma.rl.explicit import ExplicitLearning, ExplicitState
 from hemma.rl.improvement import Measured, standard
-from hemma.rl.network import Network
-from hemma.rl.policy import GaussianPolicy
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.network import Network
+from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.scaling import StateScaler
 from hemma.rl.task import ExplicitReward, Task
 from hemma.types import Array
 

@@ -8,8 +8,8 @@ import jax.numpy as jnp
 from jaxtyping import Float
 
 from hemma.rl.environment import Transitions
-from hemma.rl.network import Network
-from hemma.rl.policy import ACTIONS, FEATURES
+from hemma.rl.policies.network import Network
+from hemma.rl.policies.policy import ACTIONS, FEATURES
 from hemma.types import Array
 
 

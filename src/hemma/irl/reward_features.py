@@ -10,7 +10,7 @@ from hemma.rl.task import Expert
 from hemma.types import Array
 
 PV, LOAD, ENERGY, OUTDOOR, INDOOR, PRICE, SINE, COSINE = range(8)
-"""Positions in the scaled state x(s) of ``hemma.rl.scaling``."""
+"""Positions in the scaled state x(s) of ``hemma.rl.policies.scaling``."""
 BATTERY, HVAC = range(2)
 """Positions in the action fractions."""
 

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from hemma.report.findings import Aggregated, AggregateMethod
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, degrees, fine, hundredths, percent
-from hemma.report.results import Results
 from hemma.report.table import Cell
+from hemma.results.findings import Aggregated, AggregateMethod
+from hemma.results.results import Results
 
 AGGREGATE_HEADINGS = (
     "Method",

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from hemma.report.methods import in_order
 from hemma.report.numbers import degrees, money, plain
 from hemma.report.panels_demonstrations import demonstration_lengths
-from hemma.report.results import HomeResults
 from hemma.report.week import Week
+from hemma.results.results import HomeResults
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from hemma.report.panels_curves import COST, Curves, Spread, spread_of
 from hemma.report.panels_homes import over_homes, shares_by_home
 from hemma.report.panels_improvement import Comparison
 from hemma.report.panels_pareto import FRONTIER, parameter_name, standings, sweeps_of
-from hemma.report.results import HomeResults, Results
+from hemma.results.results import HomeResults, Results
 
 
 def words_of_pareto(home: HomeResults) -> Words:

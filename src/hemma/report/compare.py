@@ -23,8 +23,8 @@ from hemma.report.comparison import (
 )
 from hemma.report.disagreements import disagreements, why_not_comparable
 from hemma.report.methods import in_order
-from hemma.report.records import Method
-from hemma.report.results import RESULTS_FILE, HomeResults, Results, load_results
+from hemma.results.records import Method
+from hemma.results.results import RESULTS_FILE, HomeResults, Results, load_results
 
 
 def compare(folders: Sequence[Path]) -> Comparison:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hemma.evaluation import Improvement, Summary
 from hemma.report.disagreements import Disagreement
-from hemma.report.records import Intervals, Metrics
+from hemma.results.records import Intervals, Metrics
 
 
 @dataclass(frozen=True)

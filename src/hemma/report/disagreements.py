@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hemma.report.results import RESULTS_FILE, HomeResults, Results
+from hemma.results.results import RESULTS_FILE, HomeResults, Results
 
 
 @dataclass(frozen=True)

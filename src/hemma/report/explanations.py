@@ -2,7 +2,7 @@
 
 from hemma.report.methods import in_order, meaning_of
 from hemma.report.numbers import DASH
-from hemma.report.results import HomeResults, Results
+from hemma.results.results import HomeResults, Results
 
 _METRICS = (
     (

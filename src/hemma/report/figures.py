@@ -26,10 +26,10 @@ from hemma.report.panels_model import free_run_figure
 from hemma.report.panels_pareto import pareto_figure, standings, sweeps_of
 from hemma.report.panels_regret import regret_figure
 from hemma.report.panels_traces import traces_figure
-from hemma.report.results import HomeResults, Results
 from hemma.report.series import FreeRun, SeriesReader
 from hemma.report.six_panels import combined_figure, powers_figure, separate_panels
 from hemma.report.week import WEEK_DAYS, Week, read_week
+from hemma.results.results import HomeResults, Results
 
 NOT_LEARNED = ("MPC forecast", "thresholds")
 """What the learned methods are compared with, run by run, beside each other."""

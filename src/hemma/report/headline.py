@@ -5,7 +5,7 @@ from datetime import datetime
 
 from hemma.report.methods import main_method
 from hemma.report.numbers import degrees, hundredths, money, percent, plain
-from hemma.report.results import HomeResults, Method
+from hemma.results.results import HomeResults, Method
 
 DEFAULT = "default"
 

@@ -4,14 +4,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hemma.report.figures import Pictures
-from hemma.report.findings import Aggregated, AggregateMethod, PairedDifference
 from hemma.report.headline import summary_cells
 from hemma.report.markup import body, cell, figure, paragraph, row, table
 from hemma.report.methods import grouped, main_method
 from hemma.report.numbers import DASH, degrees, fine, hundredths, percent
-from hemma.report.records import Run
-from hemma.report.results import Results
 from hemma.report.table import Cell
+from hemma.results.findings import Aggregated, AggregateMethod, PairedDifference
+from hemma.results.records import Run
+from hemma.results.results import Results
 
 OVERVIEW_HEADINGS = (
     "Method",

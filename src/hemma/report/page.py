@@ -10,10 +10,10 @@ from hemma.report.headline import headline, range_of_shares
 from hemma.report.markup import body, cell, definitions, heading, paragraph, row, table
 from hemma.report.overview import overview_section
 from hemma.report.recommendation import recommendation_section
-from hemma.report.results import Results
 from hemma.report.sections import background_section, results_section
 from hemma.report.stylesheet import STYLESHEET
 from hemma.report.table import results_table
+from hemma.results.results import Results
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 """What the browser may load for the page: nothing from anywhere."""

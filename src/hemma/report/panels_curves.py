@@ -11,8 +11,8 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 from hemma.report.canvas import INK, new_figure
 from hemma.report.methods import in_order, look_of
 from hemma.report.numbers import plain
-from hemma.report.results import HomeResults
 from hemma.report.series import SeriesReader, TrainingCurve
+from hemma.results.results import HomeResults
 
 COST, DEVIATION = "train_energy_cost", "train_temperature_deviation"
 MOST_POINTS = 150

@@ -9,8 +9,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from hemma.report.canvas import FAINT, legend_above, say_nothing_to_show
 from hemma.report.methods import in_order, look_of
 from hemma.report.numbers import decimals, plain
-from hemma.report.records import DemonstrationRuns, Intervals, Metrics
-from hemma.report.results import HomeResults
+from hemma.results.records import DemonstrationRuns, Intervals, Metrics
+from hemma.results.results import HomeResults
 
 REFERENCES = ("Rule", "PPO", "MaxEnt IRL", "DNLP", "optimum")
 """Methods whose level is drawn where they were not trained on demonstrations of several lengths."""

@@ -5,11 +5,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
 from hemma.report.canvas import FAINT, INK, new_figure
-from hemma.report.findings import Aggregated
 from hemma.report.methods import look_of
 from hemma.report.numbers import percent
-from hemma.report.results import Results
 from hemma.report.rows import label_rows, method_rows, rows_height, write_value
+from hemma.results.findings import Aggregated
+from hemma.results.results import Results
 
 LOWEST = -0.5
 """A share below this is drawn at the edge as an arrow: it would flatten all others."""

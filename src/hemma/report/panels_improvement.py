@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from hemma.report.canvas import new_figure
-from hemma.report.findings import Improvement
 from hemma.report.methods import in_order
 from hemma.report.numbers import decimals
+from hemma.results.findings import Improvement
 
 _COLOURS = LinearSegmentedColormap.from_list(
     "better", ["#EDA873", "#FBEDE1", "#FFFFFF", "#E3EFF7", "#74B3DC"]

@@ -6,7 +6,6 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
 from hemma.report.canvas import GRID, INK, legend_above
 from hemma.report.methods import look_of
 from hemma.report.numbers import DASH, decimals, fine, plain
-from hemma.report.results import HomeResults
 from hemma.report.rows import (
     draw_interval,
     draw_seeds,
@@ -15,6 +14,7 @@ from hemma.report.rows import (
     method_rows,
     write_value,
 )
+from hemma.results.results import HomeResults
 
 LINEAR_BELOW = 0.001
 """Mean deviation [degC] below which the axis is linear, so that zero has a place."""

@@ -10,11 +10,11 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, NullLocator
 
 from hemma.report.canvas import FAINT, INK, new_figure
-from hemma.report.findings import ParetoPoint
 from hemma.report.labels import Label, place_labels
 from hemma.report.methods import in_order, look_of
 from hemma.report.numbers import plain, rough
-from hemma.report.results import HomeResults
+from hemma.results.findings import ParetoPoint
+from hemma.results.results import HomeResults
 
 FRONTIER = "optimum"
 LINEAR_BELOW = 0.001

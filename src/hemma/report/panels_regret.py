@@ -9,8 +9,8 @@ from matplotlib.patches import Patch
 from hemma.report.canvas import INK, new_figure
 from hemma.report.methods import BLUE, GREY, ORANGE, SKY
 from hemma.report.numbers import decimals
-from hemma.report.results import HomeResults
 from hemma.report.rows import label_rows, method_rows, rows_height, write_value
+from hemma.results.results import HomeResults
 
 PARTS = (
     ("not knowing the future", BLUE, ""),

@@ -6,8 +6,8 @@ from matplotlib.ticker import MaxNLocator
 
 from hemma.report.canvas import FAINT, INK, days_below, legend_above
 from hemma.report.methods import GREEN, ORANGE, look_of
-from hemma.report.results import HomeResults
 from hemma.report.week import Week, battery_rests
+from hemma.results.results import HomeResults
 
 PRICE_COLOUR = "#BDBDBD"
 _PRICE_SHARE = 2.6

@@ -13,8 +13,8 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from hemma.report.canvas import FAINT, midnights, new_figure
 from hemma.report.methods import GREEN, look_of
 from hemma.report.panels_time import PRICE_COLOUR, step_values
-from hemma.report.results import HomeResults
 from hemma.report.week import Week
+from hemma.results.results import HomeResults
 
 COLUMNS = 3
 _WIDTH, _ROW_HEIGHT = 9.2, 1.6

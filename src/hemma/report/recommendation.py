@@ -2,8 +2,8 @@
 
 from hemma.report.markup import body, cell, heading, paragraph, row, table
 from hemma.report.numbers import degrees, money
-from hemma.report.records import JudgedMethod
-from hemma.report.results import HomeResults
+from hemma.results.records import JudgedMethod
+from hemma.results.results import HomeResults
 
 DIGITS = 3
 """Of a day's cost: methods differ by cents."""

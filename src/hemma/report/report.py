@@ -5,7 +5,7 @@ from pathlib import Path
 from hemma.checkpoint import write_atomically
 from hemma.report.figures import draw_all
 from hemma.report.page import report_page
-from hemma.report.results import load_results
+from hemma.results.results import load_results
 
 
 def write_report(folder: Path, week: int = 1) -> Path:

@@ -16,9 +16,9 @@ from hemma.report.markup import (
 )
 from hemma.report.methods import grouped, main_method
 from hemma.report.numbers import SPACE, degrees, money, seconds
-from hemma.report.results import HomeResults
 from hemma.report.sections_comparisons import comparisons_section
 from hemma.report.table import TABLE_HEADINGS, TableRow
+from hemma.results.results import HomeResults
 
 
 def results_section(home: HomeResults, rows: list[TableRow], pictures: HomePictures) -> str:

@@ -14,9 +14,9 @@ from hemma.report.panels_time import (
     draw_grid_power,
     draw_indoor_temperature,
 )
-from hemma.report.results import HomeResults
 from hemma.report.rows import rows_height
 from hemma.report.week import Week
+from hemma.results.results import HomeResults
 
 PANEL_WIDTH, FULL_WIDTH = 5.4, 9.2
 """Widths [inch] of half and whole figures."""

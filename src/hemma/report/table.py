@@ -6,8 +6,8 @@ from pathlib import Path
 
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, decimals, degrees, fine, hundredths, money, percent, seconds
-from hemma.report.records import Method
-from hemma.report.results import HomeResults, Results, load_results
+from hemma.results.records import Method
+from hemma.results.results import HomeResults, Results, load_results
 
 TABLE_HEADINGS = (
     "Method",

@@ -8,8 +8,8 @@ from jaxtyping import Shaped
 from hemma.errors import HemmaError
 from hemma.report.methods import in_order, shown_over_time
 from hemma.report.numbers import plain
-from hemma.report.results import HomeResults
 from hemma.report.series import Clock, ExogenousSeries, ScheduleSeries, SeriesReader
+from hemma.results.results import HomeResults
 
 WEEK_DAYS = 7
 _REST = 1e-6

@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from hemma.home.battery import Battery
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.scaling import StateScaler
 
 ENERGY = 2
 """Position of E in the paper's state."""

@@ -13,10 +13,10 @@ from hemma.rl.critic import Critic
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions, collect
 from hemma.rl.explicit import scaled_reward
-from hemma.rl.exploration import Exploration, falling
 from hemma.rl.improvement import Measured, measured
-from hemma.rl.memory import Experience, Memory, empty_memory
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.exploration import Exploration, falling
+from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.replay_buffer import Experience, Memory, empty_memory
 from hemma.rl.task import ExplicitReward, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array

@@ -6,9 +6,9 @@ import jax.numpy as jnp
 from jaxtyping import Float, Int
 
 from hemma.home import Home, HomeState, Step, observe, paper_state
-from hemma.rl.actions import to_power
-from hemma.rl.policy import FEATURES, GaussianPolicy, log_density
-from hemma.rl.scaling import StateScaler
+from hemma.rl.policies.actions import to_power
+from hemma.rl.policies.policy import FEATURES, GaussianPolicy, log_density
+from hemma.rl.policies.scaling import StateScaler
 from hemma.types import Array, Costs, Exogenous
 
 

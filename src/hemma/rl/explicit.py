@@ -13,9 +13,9 @@ from jaxtyping import Float, Int
 from hemma.home import Home
 from hemma.home.checks import require
 from hemma.rl.environment import Environment, Rollout
-from hemma.rl.exploration import Exploration, falling
 from hemma.rl.improvement import Effort, Improvement, Measured, Proximal, measured
-from hemma.rl.policy import GaussianPolicy
+from hemma.rl.policies.exploration import Exploration, falling
+from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExplicitReward, Task
 from hemma.rl.training import CHUNK

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from hemma.rl import ppo
 from hemma.rl.environment import Environment, Rollout, collect
-from hemma.rl.policy import FEATURES, GaussianPolicy
+from hemma.rl.policies.policy import FEATURES, GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.types import Array
 

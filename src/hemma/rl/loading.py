@@ -10,9 +10,9 @@ import jax.numpy as jnp
 from hemma.checkpoint import load_shapes, load_tree
 from hemma.errors import HemmaError
 from hemma.home import Home
-from hemma.rl.committee import CommitteePolicy
-from hemma.rl.policy import GaussianPolicy, PolicyController
-from hemma.rl.scaling import HOUR, StateScaler
+from hemma.rl.policies.committee import CommitteePolicy
+from hemma.rl.policies.policy import GaussianPolicy, PolicyController
+from hemma.rl.policies.scaling import HOUR, StateScaler
 
 Shape = tuple[int, ...]
 

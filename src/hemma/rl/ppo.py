@@ -12,8 +12,8 @@ from jaxtyping import Float, Int
 from hemma.home.checks import require
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Rollout
-from hemma.rl.network import Network
-from hemma.rl.policy import FEATURES, GaussianPolicy, log_density
+from hemma.rl.policies.network import Network
+from hemma.rl.policies.policy import FEATURES, GaussianPolicy, log_density
 from hemma.types import Array
 
 

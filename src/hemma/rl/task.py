@@ -12,9 +12,9 @@ from jaxtyping import Float, Int, UInt
 
 from hemma.errors import HemmaError
 from hemma.home import Home
-from hemma.rl.actions import to_fractions
 from hemma.rl.environment import Environment, Transitions
-from hemma.rl.scaling import NOTHING, Context, StateScaler, fit_scaler
+from hemma.rl.policies.actions import to_fractions
+from hemma.rl.policies.scaling import NOTHING, Context, StateScaler, fit_scaler
 from hemma.types import Action, Array, Costs, Exogenous, Observation
 
 

@@ -16,7 +16,7 @@ from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.home import HomeState, Step
 from hemma.rl.environment import Environment
-from hemma.rl.policy import Policy, PolicyController
+from hemma.rl.policies.policy import Policy, PolicyController
 from hemma.rl.task import Task
 from hemma.types import Array
 

@@ -1,0 +1,79 @@
+"""The products of the stages on disk: what an interrupted run keeps and a repeated one uses again."""
+
+import hashlib
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hemma.checkpoint import write_atomically
+from hemma.results.progress import Progress
+
+
+@dataclass(frozen=True)
+class Store:
+    """The results folder, as far as one home is concerned.
+
+    Every product has a card: a JSON file with the fingerprint of all that the product depends on, the
+    digests of its files, and its content as far as that is small.
+    """
+
+    folder: Path
+    home: str
+    progress: Progress
+
+    def model(self, file: str) -> str:
+        """Name, inside the folder, of a product of this home."""
+        return f"models/{self.home}/{file}"
+
+    def schedule(self, file: str) -> str:
+        """Name, inside the folder, of a schedule of this home."""
+        return f"schedules/{self.home}/{file}"
+
+    def curve(self, file: str) -> str:
+        """Name, inside the folder, of a training curve of this home."""
+        return f"curves/{self.home}/{file}"
+
+    @property
+    def free_run(self) -> str:
+        """Name, inside the folder, of the free run of the identified network."""
+        return f"identification/{self.home}.csv"
+
+    def keep(self, product: str, mark: str, files: Iterable[str], content: dict[str, Any]) -> None:
+        """Write the card of a product whose ``files`` (names inside the folder) have just been written."""
+        digests = {name: _digest(self.folder / name) for name in files}
+        card = {"fingerprint": mark, "files": digests, "content": content}
+        write_atomically(self._card(product), json.dumps(card, indent=1, allow_nan=False).encode())
+
+    def kept(self, product: str, mark: str) -> dict[str, Any] | None:
+        """The content of a card with this fingerprint; None if there is none or a file of it was changed."""
+        card = self._read(product)
+        return card["content"] if card is not None and card["fingerprint"] == mark else None
+
+    def mark_of(self, product: str) -> str | None:
+        """The fingerprint of a product, whatever made it; None if there is none or a file was changed."""
+        card = self._read(product)
+        return None if card is None else card["fingerprint"]
+
+    def _read(self, product: str) -> dict[str, Any] | None:
+        """A card of which all files are as they were written."""
+        try:
+            card = json.loads(self._card(product).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+        if not isinstance(card, dict) or "fingerprint" not in card:
+            return None
+        unchanged = all(_digest(self.folder / name) == digest for name, digest in card["files"].items())
+        return card if unchanged else None
+
+    def _card(self, product: str) -> Path:
+        return self.folder / self.model(f"{product}.json")
+
+
+def _digest(path: Path) -> str | None:
+    """SHA-256 of a file, None where it cannot be read."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return None

@@ -1,0 +1,76 @@
+"""Stage: measure a method's runs on the test period, at equal comfort, and write down what they did."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+
+from hemma.evaluation import EqualComfort, Metrics, Outcome, measure
+from hemma.optimisation.optimum import OptimumProblem, optimum_problem
+from hemma.results.fingerprint import code, fingerprint
+from hemma.results.found import Run
+from hemma.results.schedules import write_exogenous, write_schedule
+from hemma.results.store import Store
+from hemma.stages.case import Case
+
+STAGE = "evaluate"
+CODE = code("evaluation", "forecasting", "optimisation", "control")
+
+
+@dataclass(frozen=True)
+class Played:
+    """One run of a method on the test period."""
+
+    outcome: Outcome
+    seed: int | None = None
+    seconds_to_train: float | None = None
+    curve: str | None = None
+
+
+@dataclass(frozen=True)
+class Judge:
+    """Measures methods on one home; the perfect-information problem is set up once, when first needed."""
+
+    case: Case
+    store: Store
+
+    @cached_property
+    def problem(self) -> OptimumProblem:
+        """Perfect information over the test period."""
+        return optimum_problem(self.case.home, self.case.test)
+
+    def judged(self, label: str, mark: str, play: Callable[[], Sequence[Played]]) -> tuple[Run, ...]:
+        """The runs of ``label``, which depend on ``mark``: measured now, or kept from an earlier run."""
+        mark = fingerprint(STAGE, label, CODE, self.case.mark, mark)
+        product = f"{_slug(label)}.runs"
+        content = self.store.kept(product, mark)
+        if content is not None:
+            return tuple(Run(**{**run, "metrics": Metrics(**run["metrics"])}) for run in content["runs"])
+        runs = tuple(self._measured(label, played) for played in play())
+        files = [name for run in runs for name in (run.schedule, run.curve) if name is not None]
+        self.store.keep(product, mark, files, {"runs": [asdict(run) for run in runs]})
+        return runs
+
+    def write_exogenous(self) -> None:
+        """Write what the home did not decide in the test period, beside the schedules."""
+        path = self.store.folder / self.store.schedule("exogenous.csv")
+        write_exogenous(path, self.case.parts.test.time_stamps(), self.case.test)
+
+    def _measured(self, label: str, played: Played) -> Run:
+        file = _slug(label) + (".csv" if played.seed is None else f"-{played.seed}.csv")
+        schedule = self.store.schedule(file)
+        write_schedule(self.store.folder / schedule, self.case.parts.test.time_stamps(), played.outcome)
+        metrics = measure(played.outcome, self._at_equal_comfort(played.outcome), played.seconds_to_train)
+        return Run(seed=played.seed, metrics=metrics, schedule=schedule, curve=played.curve)
+
+    def _at_equal_comfort(self, outcome: Outcome) -> EqualComfort:
+        """Perfect information with the deviation that the run itself caused."""
+        deviation = outcome.total_deviation
+        return EqualComfort(
+            optimum=self.problem.solve(deviation).cost,
+            no_battery=self.problem.solve(deviation, battery=False).cost,
+        )
+
+
+def _slug(label: str) -> str:
+    """A file name: ``no battery`` becomes ``no-battery``."""
+    return label.replace(" ", "-")

@@ -1,0 +1,92 @@
+"""What the policies of a home see: made for the days that they learn from, and for those that they act on."""
+
+from dataclasses import dataclass
+
+import jax
+import numpy as np
+from jaxtyping import Int
+
+from hemma.forecasting.observations import PAPER, ObservationModel, Observer
+from hemma.forecasting.outlook import Outlook, yesterday
+from hemma.home import Controller
+from hemma.methods.pupils import Pupil
+from hemma.results.fingerprint import code, fingerprint
+from hemma.results.store import Store
+from hemma.rl.policies.policy import InformedController, PolicyController
+from hemma.rl.policies.scaling import NOTHING, Context
+from hemma.stages.case import Case
+from hemma.stages.default import choose_forecast
+from hemma.stages.demonstrate import Expert
+from hemma.types import Exogenous
+
+
+@dataclass(frozen=True)
+class Sight:
+    """An observation model at work in the home of a case."""
+
+    case: Case
+    observer: Observer
+    facts: tuple = ()
+    """What the forecast depends on, by name."""
+
+    @property
+    def model(self) -> ObservationModel:
+        """What is seen."""
+        return self.observer.model
+
+    @property
+    def mark(self) -> str:
+        """Fingerprint of what is seen besides the paper's state; empty if nothing is."""
+        if self.model == PAPER:
+            return ""
+        return fingerprint(
+            "sight", code("forecasting", "optimisation", "control"), self.case.mark, self.model, self.facts
+        )
+
+    def learning(self, days: int, known_days: int | None = None) -> Context:
+        """In the first ``days`` days of the training period, of which ``known_days`` are known, or all."""
+        if self.model == PAPER:
+            return NOTHING
+        case = self.case
+        known = case.first_days(case.training_days if known_days is None else known_days)
+        slots = case.first_days(days).slots
+        weekdays = case.parts.training.weekdays()[:slots]
+        return self.observer.training_context(known, slots, float(case.home.slot_length), weekdays)
+
+    def in_test(self) -> Context:
+        """In the test period."""
+        return self.over(self.case.training, self.case.test, self.case.parts.test.weekdays())
+
+    def held_out(self, first: int) -> Context:
+        """In the training period from the slot ``first`` on, which was not learned from."""
+        case = self.case
+        past, period = case.training.window(0, first), case.training.window(first, case.training.slots)
+        return self.over(past, period, case.parts.training.weekdays()[first:])
+
+    def over(self, past: Exogenous, period: Exogenous, weekdays: Int[np.ndarray, "slots"]) -> Context:
+        """In a period, as it was read, after a past; ``weekdays`` are those of the period, Monday 0."""
+        if self.model == PAPER:
+            return NOTHING
+        case = self.case
+        outlook = Outlook(past, period, float(case.home.slot_length), case.experiment.forecast_horizon)
+        return self.observer.context(outlook, weekdays)
+
+
+def sight_of(pupil: Pupil, expert: Expert, store: Store) -> Sight:
+    """What a pupil sees; a forecast is the one that the default controller plans with."""
+    case, settings = expert.case, expert.case.experiment.default
+    if not (pupil.model.forecast or pupil.is_causal):
+        return Sight(case, Observer(pupil.model, yesterday, settings.published_at), (settings.published_at,))
+    chosen = choose_forecast(expert, store).candidate
+    return Sight(
+        case, Observer(pupil.model, chosen.forecaster, settings.published_at), (chosen.name, settings)
+    )
+
+
+def informed(controllers: PolicyController, context: Context) -> Controller:
+    """Stacked controllers that see their context while they act."""
+    if context is NOTHING:
+        return controllers
+    runs = controllers.scaler.centre.shape[0]
+    stacked = jax.tree.map(lambda x: np.broadcast_to(x, (runs, *np.shape(x))), context)
+    return InformedController(controllers, stacked)

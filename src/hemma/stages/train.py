@@ -1,0 +1,220 @@
+"""Stage: train a learner, all its runs side by side, saved while under way."""
+
+import time
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from pathlib import Path
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+
+from hemma.checkpoint import load_header, load_tree, save_tree
+from hemma.errors import HemmaError
+from hemma.forecasting.observations import PAPER
+from hemma.results.fingerprint import code, fingerprint
+from hemma.results.store import Store
+from hemma.rl.policies.policy import PolicyController
+from hemma.rl.task import Task, side_by_side
+from hemma.rl.training import Algorithm, Training, begin, controllers, load, save, train
+from hemma.stages.curves import write_curves
+from hemma.stages.rewards import keep_rewards
+from hemma.stages.sight import Sight
+
+STAGE = "train"
+SECONDS_BETWEEN_SAVES = 20.0
+
+
+@dataclass(frozen=True, eq=False)
+class Lesson:
+    """What some runs learn, side by side."""
+
+    label: str
+    """Of its files, and of the stage."""
+    algorithm: Algorithm
+    task: Task
+    """One run a seed, stacked."""
+    basis: str
+    """Fingerprint of all that the task was made from."""
+    sight: Sight | None = None
+    """What the policies see besides the paper's state, if anything."""
+
+    @property
+    def runs(self) -> int:
+        """How many runs there are."""
+        return self.task.seed.shape[0]
+
+    @property
+    def kind(self) -> Hashable:
+        """Lessons of one kind can be trained in one call: the same algorithm, as many features."""
+        return self.algorithm, self.task.environment.width
+
+    @property
+    def mark(self) -> str:
+        """Fingerprint of all that the trained controllers depend on."""
+        seeds = [int(seed) for seed in self.task.seed]
+        return fingerprint(STAGE, code("rl", "irl"), self.algorithm, self.basis, seeds)
+
+
+@dataclass(frozen=True)
+class Trained:
+    """The product of the stage: one controller a run, stacked."""
+
+    controllers: PolicyController
+    curves: tuple[str, ...]
+    """Paths of the learning curves inside the folder."""
+    seconds: float
+    """Wall-clock time in which all runs were trained side by side, compilation included; of lessons trained
+    together each has the share of its runs [s]."""
+    mark: str
+
+
+@dataclass(frozen=True)
+class _Classroom:
+    """A lesson under way."""
+
+    lesson: Lesson
+    store: Store
+
+    @property
+    def under_way(self) -> Path:
+        """Where the state of an unfinished training lies."""
+        return self.store.folder / self.store.model(f"{self.lesson.label}.training.safetensors")
+
+    def train(self) -> tuple[Training, float]:
+        """Train to the end, from where an interrupted run stopped; also the seconds it took in total."""
+        training, before = self._earlier()
+        clock = _Clock(time.monotonic() - before)
+        latest = training
+
+        def on_chunk(now: Training) -> None:
+            nonlocal latest
+            latest = now
+            self.store.progress.advanced(self.lesson.label, now.iterations, _message(now))
+            if clock.should_save():
+                self._save(now, clock)
+
+        try:
+            training = train(self.lesson.task, self.lesson.algorithm, training, on_chunk)
+        except KeyboardInterrupt:
+            if latest is not None:
+                self._save(latest, clock)
+            raise
+        return training, clock.seconds
+
+    def _earlier(self) -> tuple[Training | None, float]:
+        try:
+            header = load_header(self.under_way)
+        except HemmaError:
+            return None, 0.0
+        if header.get("fingerprint") != self.lesson.mark:
+            return None, 0.0
+        training = load(self.under_way, self.lesson.task, self.lesson.algorithm)
+        self.store.progress.noticed(
+            f"{self.lesson.label}: going on from iteration {training.iterations} of an interrupted run"
+        )
+        return training, header["seconds"]
+
+    def _save(self, training: Training, clock: "_Clock") -> None:
+        save(self.under_way, training, {"fingerprint": self.lesson.mark, "seconds": clock.seconds})
+        clock.saved()
+
+
+class _Clock:
+    """How long a training has taken, and when its state was last saved."""
+
+    def __init__(self, begun: float):
+        self._begun = begun
+        self._saved = time.monotonic()
+
+    @property
+    def seconds(self) -> float:
+        return time.monotonic() - self._begun
+
+    def should_save(self) -> bool:
+        return time.monotonic() - self._saved >= SECONDS_BETWEEN_SAVES
+
+    def saved(self) -> None:
+        self._saved = time.monotonic()
+
+
+def train_lessons(lessons: Sequence[Lesson], store: Store) -> tuple[Trained, ...]:
+    """The controllers of lessons of one kind: those of earlier calls, and the rest trained in one call.
+
+    A wide batch costs less a run, and is compiled once. The learning curves are written beside the
+    controllers.
+    """
+    missing = [lesson for lesson in lessons if store.kept(lesson.label, lesson.mark) is None]
+    for lesson in lessons:
+        if lesson not in missing:
+            store.progress.reused(lesson.label, f"{lesson.runs} runs")
+    if missing:
+        _train(missing, store)
+    return tuple(_taken(lesson, store) for lesson in lessons)
+
+
+def train_lesson(lesson: Lesson, store: Store) -> Trained:
+    """The controllers of one lesson."""
+    return train_lessons([lesson], store)[0]
+
+
+def _train(lessons: Sequence[Lesson], store: Store) -> None:
+    whole = _together(lessons)
+    store.progress.started(whole.label, whole.algorithm.iterations)
+    classroom = _Classroom(whole, store)
+    training, seconds = classroom.train()
+    ends = list(accumulate(lesson.runs for lesson in lessons))
+    for lesson, start, stop in zip(lessons, [0, *ends], ends, strict=False):
+        part = jax.tree.map(lambda x, own=slice(start, stop): x[own], training)
+        _keep(lesson, part, seconds * lesson.runs / whole.runs, store)
+    classroom.under_way.unlink(missing_ok=True)
+    store.progress.finished(whole.label, f"{whole.runs} runs side by side. {_message(training)}")
+
+
+def _together(lessons: Sequence[Lesson]) -> Lesson:
+    """All runs of the lessons as one lesson."""
+    first = lessons[0]
+    if len(lessons) == 1:
+        return first
+    task = side_by_side([lesson.task for lesson in lessons])
+    basis = fingerprint("together", [lesson.mark for lesson in lessons])
+    return Lesson(f"{first.label}-and-{len(lessons) - 1}-more", first.algorithm, task, basis)
+
+
+def _keep(lesson: Lesson, training: Training, seconds: float, store: Store) -> None:
+    curves, file = _curves(lesson, store), store.model(f"{lesson.label}.safetensors")
+    home = jax.tree.map(lambda x: x[0], lesson.task.environment.home)
+    write_curves(store.folder, curves, training.curve, home)
+    made = controllers(training, lesson.task, lesson.algorithm)
+    seen = PAPER.name if lesson.sight is None else lesson.sight.model.name
+    save_tree(store.folder / file, made, {"fingerprint": lesson.mark, "observation_model": seen})
+    rewards = keep_rewards(training, lesson.task, lesson.label, store)
+    store.keep(lesson.label, lesson.mark, [file, *rewards, *curves], {"seconds": seconds})
+
+
+def _taken(lesson: Lesson, store: Store) -> Trained:
+    content = store.kept(lesson.label, lesson.mark)
+    if content is None:
+        raise HemmaError(
+            f"{lesson.label}: expected the controllers just trained in {store.folder}, they are gone or "
+            "changed; let one run at a time use a results folder, and run the same command again"
+        )
+    stored = load_tree(store.folder / store.model(f"{lesson.label}.safetensors"), _structure(lesson))
+    return Trained(stored, _curves(lesson, store), content["seconds"], lesson.mark)
+
+
+def _curves(lesson: Lesson, store: Store) -> tuple[str, ...]:
+    return tuple(store.curve(f"{lesson.label}-{run}.csv") for run in range(lesson.runs))
+
+
+def _structure(lesson: Lesson) -> PolicyController:
+    """Controllers of these sizes, to be filled from a checkpoint; nothing is computed for it."""
+    algorithm = lesson.algorithm
+    shapes = eqx.filter_eval_shape(lambda t: controllers(begin(t, algorithm), t, algorithm), lesson.task)
+    return jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
+
+
+def _message(training: Training) -> str:
+    cost, deviation = training.curve.training_cost[:, -1], training.curve.training_deviation[:, -1]
+    return f"training days: {cost.mean():.3f} a day, deviation {deviation.mean():.3f} °C"

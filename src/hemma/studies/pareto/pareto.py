@@ -1,0 +1,69 @@
+"""Stage: cost against comfort, by sweeps of what trades one for the other."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from hemma.results.found import ParetoPoint, Run
+from hemma.stages.explicit import Sweep
+from hemma.stages.judge import Judge
+from hemma.stages.play import play
+from hemma.stages.train import Trained
+from hemma.studies.pareto.bands import Bands
+
+BUDGETS = 9
+"""Points of the proven frontier."""
+
+
+@dataclass(frozen=True)
+class Pareto:
+    """Sweeps on one home."""
+
+    judge: Judge
+
+    def frontier(self, largest: float) -> tuple[ParetoPoint, ...]:
+        """The proven least cost for total deviations from the least up to ``largest`` [degC].
+
+        The budgets are spaced by squares: the frontier is steepest where comfort is nearly kept.
+        """
+        problem, slots = self.judge.problem, self.judge.case.test.slots
+        least = problem.least_deviation
+        points = []
+        for share in np.linspace(0.0, 1.0, BUDGETS) ** 2:
+            found = problem.solve(float(least + share * max(largest - least, 0.0)))
+            mean = found.deviation / slots
+            points.append(ParetoPoint("optimum", "total deviation budget", found.budget, found.cost, mean, 1))
+        return tuple(points)
+
+    def comfort_prices(self, sweep: Sweep) -> tuple[ParetoPoint, ...]:
+        """A method with each beta_T, trained on the first part of the training period."""
+        lesson, trained = sweep.lesson, sweep.trained
+        runs = self.judge.judged(lesson.label, trained.mark, partial(play, self.judge.case, lesson, trained))
+        points = []
+        for price in dict.fromkeys(sweep.prices):
+            same = [run for own, run in zip(sweep.prices, runs, strict=True) if own == price]
+            points.append(_point(sweep.method, "beta_T", price, same))
+        return tuple(points)
+
+    def comfort_bands(self, bands: Bands, trained: Trained, usual: Sequence[Run]) -> tuple[ParetoPoint, ...]:
+        """HA-1 whose expert aims at another edge of the band; measured against the band that people want.
+
+        ``usual`` are the runs of HA-1 itself, whose expert aims at that band.
+        """
+        case, lesson = self.judge.case, bands.lesson
+        runs = self.judge.judged(lesson.label, trained.mark, partial(play, case, lesson, trained))
+        edge = "lower comfort limit" if case.home.hvac.heats else "upper comfort limit"
+        seeds = case.experiment.pareto.seeds
+        parts = [runs[i * seeds : (i + 1) * seeds] for i in range(len(bands.limits))]
+        own = case.home.comfort.low if case.home.hvac.heats else case.home.comfort.high
+        swept = [*zip(bands.limits, parts, strict=True), (float(own), usual)]
+        return tuple(_point("HA-1", edge, x, part) for x, part in sorted(swept, key=lambda pair: pair[0]))
+
+
+def _point(series: str, parameter: str, value: float, runs: Sequence[Run]) -> ParetoPoint:
+    cost = float(np.mean([run.metrics.energy_cost for run in runs]))
+    deviation = float(np.mean([run.metrics.mean_temperature_deviation for run in runs]))
+    schedules = tuple(run.schedule for run in runs)
+    return ParetoPoint(series, parameter, value, cost, deviation, len(runs), schedules)

@@ -1,0 +1,209 @@
+"""The table again under faults: what was trained under good conditions meets bad ones."""
+
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Any
+
+import equinox as eqx
+import jax
+import numpy as np
+
+from hemma.control.comfort import ComfortHold
+from hemma.control.rolling import rolling_mpc
+from hemma.control.rule import Rule
+from hemma.control.sensors import SafetyLayer, WatchedStep, watched_replay
+from hemma.control.thresholds import fit_thresholds
+from hemma.evaluation import EqualComfort, Outcome, measure
+from hemma.evaluation.replay import outcome_of
+from hemma.forecasting.outlook import Outlook
+from hemma.home import Controller
+from hemma.home.precision import in_double, in_numpy
+from hemma.methods.pupils import PUPILS
+from hemma.optimisation.optimum import OptimumProblem, optimum_problem
+from hemma.results.fingerprint import code, fingerprint
+from hemma.results.store import Store
+from hemma.rl.policies.scaling import Context
+from hemma.stages.demonstrate import Expert
+from hemma.stages.planners import Planner
+from hemma.stages.sight import informed, sight_of
+from hemma.stages.train import Trained
+from hemma.studies.robustness.faults import Fault, FaultSettings, faults
+from hemma.studies.robustness.scenes import Scene, scene
+
+STAGE = "robustness"
+FOREIGN = Fault(
+    "controllers of another home",
+    "trained, fitted and identified in the next home; the last home has those of the first",
+    lambda scene, _: scene,
+)
+"""Nothing is wrong with this home but that its controllers have never seen it."""
+SEED = 0
+"""Of what goes wrong; the same for all methods, so that they can be compared."""
+
+
+@dataclass(frozen=True)
+class FaultRun:
+    """One run of a method under one fault."""
+
+    method: str
+    seed: int | None
+    energy_cost: float
+    """Sum of X1 + X2 [currency]."""
+    mean_temperature_deviation: float
+    """[degC]."""
+    max_temperature_deviation: float
+    """[degC]."""
+    share_of_savings: float | None
+    """At equal comfort, of what perfect information saves in the same changed home."""
+    regret: float
+    """[currency]."""
+    limited: int | None
+    """Slots in which the safety layer limited an action; None for planners, which it does not watch."""
+    comfort_overrides: int | None
+    """Slots in which it took the HVAC over."""
+
+
+@dataclass(frozen=True)
+class FaultResults:
+    """All methods under one fault."""
+
+    fault: str
+    meaning: str
+    repaired_readings: int
+    """Slots in which a reading was missing and the last one was taken."""
+    runs: tuple[FaultRun, ...]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Lets the methods of one home meet every fault in its test period."""
+
+    expert: Expert
+    store: Store
+    trained: dict[str, Trained]
+    """Learned methods by name."""
+    planners: tuple[Planner, ...]
+    """Those of the results table; the causal ones take part."""
+
+    def results(self, neighbour: "Trial | None" = None) -> tuple[FaultResults, ...]:
+        """One entry a fault, nothing wrong first, what a ``neighbour``'s methods do in this home last."""
+        met: list[tuple[Fault, Trial]] = [(fault, self) for fault in faults(self._settings)]
+        if neighbour is not None:
+            met.append((FOREIGN, neighbour))
+        self.store.progress.started(STAGE, len(met))
+        found = []
+        for number, (fault, actor) in enumerate(met):
+            found.append(self._kept(fault, actor))
+            self.store.progress.advanced(STAGE, number + 1, fault.name)
+        self.store.progress.finished(STAGE, f"{len(met)} faults")
+        return tuple(found)
+
+    @property
+    def _settings(self) -> FaultSettings:
+        return self.expert.case.experiment.faults
+
+    @property
+    def _marks(self) -> list[Any]:
+        """Fingerprints of all that the controllers depend on."""
+        learned = sorted((name, one.mark) for name, one in self.trained.items())
+        planned = [(planner.method, planner.facts) for planner in self.planners]
+        return [self.expert.mark, learned, planned, self.expert.case.experiment.forecast_horizon]
+
+    def _kept(self, fault: Fault, actor: "Trial") -> FaultResults:
+        layers = code(
+            "evaluation", "forecasting", "optimisation", "control", "rl", "home", "stages", "studies"
+        )
+        mark = fingerprint(STAGE, layers, self._marks, self._settings, fault.name, actor._marks)
+        product = f"{STAGE}-{fault.name.replace(' ', '-')}"
+        content = self.store.kept(product, mark)
+        if content is None:
+            case = self.expert.case
+            now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
+            met = FaultResults(fault.name, fault.meaning, now.repaired, actor.runs(now))
+            content = asdict(met)
+            self.store.keep(product, mark, [], content)
+        return FaultResults(**{**content, "runs": tuple(FaultRun(**run) for run in content["runs"])})
+
+    def runs(self, now: Scene) -> tuple[FaultRun, ...]:
+        """What the methods that learned in this home do in a scene, be it of another one."""
+        problem = optimum_problem(now.home, now.exogenous, disturbances=now.readings.disturbance)
+        runs: list[FaultRun] = []
+        for method, controller in self._plain.items():
+            runs.append(self._watched(method, None, controller, now, problem))
+        causal = [planner for planner in self.planners if planner.is_causal]
+        runs += [self._planned(planner, now, problem) for planner in causal]
+        for method, one in self.trained.items():
+            controllers = informed(one.controllers, self._seen(method, now))
+            for seed in range(min(one.controllers.scaler.centre.shape[0], self._settings.runs)):
+                controller = jax.tree.map(lambda x, seed=seed: x[seed], controllers)
+                runs.append(self._watched(method, seed, controller, now, problem))
+        return tuple(runs)
+
+    def _seen(self, method: str, now: Scene) -> Context:
+        """What a learned method sees besides the paper's state, as it is read."""
+        case, sight = self.expert.case, sight_of(PUPILS[method], self.expert, self.store)
+        return sight.over(case.training, now.readings.exogenous, case.parts.test.weekdays())
+
+    @cached_property
+    def _plain(self) -> dict[str, Controller]:
+        case, believed = self.expert.case, self.expert.planning_home
+        return {
+            "Rule": Rule(case.home.hvac, case.home.comfort),
+            "no battery": ComfortHold(believed),
+            "thresholds": fit_thresholds(believed, case.training),
+        }
+
+    def _watched(
+        self, method: str, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
+    ) -> FaultRun:
+        safety = SafetyLayer(self.expert.planning_home, self._settings.margin, self._settings.adapts)
+        with jax.enable_x64(True):
+            inputs = in_double((now.home, now.exogenous, controller, now.readings, safety, jax.random.key(0)))
+            watched = in_numpy(_replayed(*inputs))
+        changes = watched.interventions
+        counts = (int(np.sum(np.asarray(changes.limited))), int(np.sum(np.asarray(changes.comfort))))
+        return _judged(method, seed, outcome_of(watched.step), problem, counts)
+
+    def _planned(self, planner: Planner, now: Scene, problem: OptimumProblem) -> FaultRun:
+        case = self.expert.case
+        outlook = Outlook(
+            case.training,
+            now.readings.exogenous,
+            float(case.home.slot_length),
+            case.experiment.forecast_horizon,
+        )
+        forecasts = planner.forecaster(outlook)
+        path = rolling_mpc(
+            self.expert.planning_home,
+            now.home,
+            now.exogenous,
+            forecasts,
+            now.readings,
+            adapts=self._settings.adapts,
+        )
+        return _judged(planner.method, None, outcome_of(path.steps), problem, None)
+
+
+@eqx.filter_jit
+def _replayed(home, exogenous, controller, readings, safety, key) -> WatchedStep:
+    return watched_replay(home, exogenous, controller, readings, safety, key)
+
+
+def _judged(
+    method: str, seed: int | None, outcome: Outcome, problem: OptimumProblem, counts: tuple[int, int] | None
+) -> FaultRun:
+    """Its measures; perfect information knows the changed home, and what will disturb it."""
+    budget = outcome.total_deviation
+    reference = EqualComfort(problem.solve(budget).cost, problem.solve(budget, battery=False).cost)
+    metrics = measure(outcome, reference)
+    return FaultRun(
+        method=method,
+        seed=seed,
+        energy_cost=metrics.energy_cost,
+        mean_temperature_deviation=metrics.mean_temperature_deviation,
+        max_temperature_deviation=float(np.max(outcome.temperature_deviation)),
+        share_of_savings=metrics.share_of_savings,
+        regret=metrics.regret,
+        limited=None if counts is None else counts[0],
+        comfort_overrides=None if counts is None else counts[1],
+    )

@@ -1,0 +1,159 @@
+"""The transfer test: is a reward that was learned in one home worth anything in a changed one?
+
+Fu et al. 2018 (arXiv 1710.11248) claim it for AIRL: the reward carries over where the policy does not.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jax
+
+from hemma.data import Traces
+from hemma.evaluation import evaluate_stacked
+from hemma.results.fingerprint import fingerprint
+from hemma.results.found import MethodResults
+from hemma.results.progress import Progress, Silence
+from hemma.results.store import Store
+from hemma.rl.policies.policy import PolicyController
+from hemma.settings.experiment import Experiment
+from hemma.stages.demonstrate import Expert
+from hemma.stages.identify import Identification, identify
+from hemma.stages.judge import Judge, Played
+from hemma.stages.rewards import kept_rewards
+from hemma.stages.train import Lesson, Trained, train_lesson, train_lessons
+from hemma.studies.transfer.changes import CHANGES, Change, Place, places
+from hemma.studies.transfer.document import Measured, transfer_document, write_transfer
+from hemma.studies.transfer.lessons import (
+    Origin,
+    Settled,
+    adaptation_lessons,
+    airl_lesson,
+    bill_lesson,
+    carried_policies,
+    gail_lesson,
+    ground_lessons,
+    reward_lessons,
+)
+from hemma.studies.transfer.maps import draw_maps
+from hemma.studies.transfer.report import write_transfer_report
+
+ADAPTED, REWARD, GROUND = "adapted by r", "PPO on r", "PPO on g"
+POLICY, GAIL = "policy of AIRL", "policy of GAIL"
+ANEW, BILL = "AIRL anew", "PPO on the bill"
+
+
+@dataclass(frozen=True)
+class TransferJob:
+    """What to test, on which home, and where the results go."""
+
+    experiment: Experiment
+    traces: Traces
+    folder: Path
+    test_from: str | None = None
+    command: str = "hemma transfer"
+    changes: tuple[Change, ...] = CHANGES
+    """The first is none: there the reward is learned."""
+
+
+def transfer(job: TransferJob, progress: Progress | None = None) -> dict[str, Any]:
+    """Learn in the unchanged home, again in each changed one, measure all; the content of ``transfer.json``.
+
+    Every product is kept in the folder as that of the main job is; the same call goes on where it stopped.
+    """
+    store = Store(job.folder, job.traces.name, Silence() if progress is None else progress)
+    settled = _settled(places(job.experiment, job.traces, job.changes, job.test_from), store)
+    first, *changed = settled
+    own = airl_lesson(first)
+    trained, *anew = train_lessons([own, *map(airl_lesson, changed)], store)
+    gail = train_lesson(gail_lesson(first), store)
+    origin = Origin(first, trained, gail, kept_rewards(own.label, store))
+    draw_maps(origin, job.folder)
+    columns = [*_carried(origin, len(settled)), *_paid(settled, origin, store), _Column(ANEW, (None, *anew))]
+    frozen = reward_lessons(settled, origin)
+    measured = [
+        Measured(one.place, tuple(_measured(_There(one, lesson), columns, number)))
+        for number, (one, lesson) in enumerate(zip(settled, frozen, strict=True))
+    ]
+    content = transfer_document(job.command, job.experiment, measured)
+    write_transfer(job.folder, content)
+    write_transfer_report(job.folder)
+    return content
+
+
+@dataclass(frozen=True)
+class _There:
+    """A place, and what a policy from elsewhere finds there."""
+
+    settled: Settled
+    frozen: Lesson
+    """Its task has the home, and the scaler of the unchanged home carried over."""
+
+
+def _as_trained(trained: Trained, _: Lesson) -> PolicyController:
+    return trained.controllers
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A method, with what it learned for each place."""
+
+    method: str
+    trained: tuple[Trained | None, ...]
+    """None where it would repeat another."""
+    controllers: Callable[[Trained, Lesson], PolicyController] = _as_trained
+
+
+def _carried(origin: Origin, count: int) -> list[_Column]:
+    """The policies of the unchanged home, as they are."""
+    return [
+        _Column(POLICY, (origin.trained,) * count, carried_policies),
+        _Column(GAIL, (origin.gail,) * count, carried_policies),
+    ]
+
+
+def _paid(settled: list[Settled], origin: Origin, store: Store) -> list[_Column]:
+    """What is trained in every place on a reward."""
+    lessons = {
+        ADAPTED: adaptation_lessons(settled, origin),
+        REWARD: reward_lessons(settled, origin),
+        GROUND: ground_lessons(settled, origin),
+        BILL: [bill_lesson(one) for one in settled],
+    }
+    return [_Column(method, train_lessons(made, store)) for method, made in lessons.items()]
+
+
+def _measured(there: _There, columns: Sequence[_Column], number: int) -> Iterator[MethodResults]:
+    """What each method does in the place of that number."""
+    judge = Judge(there.settled.place.case, there.settled.store)
+    for column in columns:
+        trained = column.trained[number]
+        if trained is not None:
+            controllers = column.controllers(trained, there.frozen)
+            mark = fingerprint("transfer", there.frozen.mark, trained.mark)
+            play = partial(_play, there.settled, controllers, trained.seconds)
+            yield MethodResults(column.method, judge.judged(column.method, mark, play))
+
+
+def _play(settled: Settled, controllers: PolicyController, seconds: float) -> list[Played]:
+    """One outcome a seed."""
+    case = settled.place.case
+    keys = jax.random.split(jax.random.key(0), len(settled.seeds))
+    outcomes = evaluate_stacked(case.home, case.test, controllers, keys)
+    return [Played(outcome, seed, seconds) for outcome, seed in zip(outcomes, settled.seeds, strict=True)]
+
+
+def _settled(all_places: tuple[Place, ...], store: Store) -> list[Settled]:
+    """Every place with its expert; the network is that of the unchanged home where the building is."""
+    old = identify(all_places[0].case, store)
+    return [_settle(place, old, store) for place in all_places]
+
+
+def _settle(place: Place, old: Identification, store: Store) -> Settled:
+    change = place.change
+    own = Store(store.folder, f"{store.home}/{change.slug}", store.progress)
+    expert = Expert(place.case, identify(place.case, own) if change.is_identified else old)
+    believed = expert if change.knows_building else Expert(place.case, old)
+    return Settled(place, expert, believed.planning_home, own)
