@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from hemma.experiment.home_run import HomeRun, Stage
+from hemma.methods import learned
 from hemma.results.ledger import open_ledger
 from hemma.results.progress import Progress, Silence
 from hemma.results.reading import json_content
@@ -24,6 +25,7 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     """
     progress = Silence() if progress is None else progress
     require_different_names(job.homes)
+    learned(job.experiment)  # refuses unknown names before any work
     cases = [make_case(job.experiment, traces, job.test_from) for traces in job.homes]
     require_writable(job.folder)
     ledger = open_ledger(job.folder, job.command, outside(job.experiment), progress)

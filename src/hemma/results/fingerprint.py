@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 from datetime import date
 from functools import cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import jax
@@ -46,7 +47,7 @@ def plain(value: Any) -> Any:
     """``value`` in a form that JSON writes the same way each time; arrays become digests of their content."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
-    if isinstance(value, type):
+    if isinstance(value, type | FunctionType):
         return value.__qualname__
     if isinstance(value, date):
         return value.isoformat()

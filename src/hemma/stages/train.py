@@ -68,6 +68,13 @@ class Trained:
     """Wall-clock time in which all runs were trained side by side, compilation included; of lessons trained
     together each has the share of its runs [s]."""
     mark: str
+    sight: Sight | None = None
+    """What the policies see besides the paper's state, if anything."""
+
+    @property
+    def runs(self) -> int:
+        """How many runs there are."""
+        return self.controllers.scaler.centre.shape[0]
 
 
 @dataclass(frozen=True)
@@ -154,6 +161,15 @@ def train_lessons(lessons: Sequence[Lesson], store: Store) -> tuple[Trained, ...
     return tuple(_taken(lesson, store) for lesson in lessons)
 
 
+def train_all(lessons: Sequence[Lesson], store: Store) -> dict[str, Trained]:
+    """The controllers of each lesson by its label; those of one kind are trained in one call."""
+    trained: dict[str, Trained] = {}
+    for kind in dict.fromkeys(lesson.kind for lesson in lessons):
+        same = [lesson for lesson in lessons if lesson.kind == kind]
+        trained |= zip([lesson.label for lesson in same], train_lessons(same, store), strict=True)
+    return trained
+
+
 def train_lesson(lesson: Lesson, store: Store) -> Trained:
     """The controllers of one lesson."""
     return train_lessons([lesson], store)[0]
@@ -201,7 +217,7 @@ def _taken(lesson: Lesson, store: Store) -> Trained:
             "changed; let one run at a time use a results folder, and run the same command again"
         )
     stored = load_tree(store.folder / store.model(f"{lesson.label}.safetensors"), _structure(lesson))
-    return Trained(stored, _curves(lesson, store), content["seconds"], lesson.mark)
+    return Trained(stored, _curves(lesson, store), content["seconds"], lesson.mark, lesson.sight)
 
 
 def _curves(lesson: Lesson, store: Store) -> tuple[str, ...]:
