@@ -2,9 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import accumulate
-
-import jax
 
 from hemma.irl.airl import AdversarialImitation
 from hemma.irl.cloning import BehaviourCloning
@@ -13,11 +10,10 @@ from hemma.irl.reward import AbstractHead, ImitationScore, ShapedReward
 from hemma.methods.pupils import PUPILS, Pupil
 from hemma.results.fingerprint import fingerprint
 from hemma.results.store import Store
-from hemma.rl import task
 from hemma.rl.improvement import Proximal
 from hemma.rl.policies.committee import Committee
 from hemma.rl.policies.scaling import NOTHING, Context
-from hemma.rl.task import Task, make_task
+from hemma.rl.task import Task, make_task, stack
 from hemma.rl.training import Algorithm
 from hemma.settings.experiment import Experiment
 from hemma.stages.case import Case
@@ -89,10 +85,7 @@ def imitations(experiment: Experiment, training_days: int) -> tuple[Imitation, .
 
 
 def lessons(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation]) -> tuple[Lesson, ...]:
-    """The lesson of each: its expert demonstrates, and its task sees those days and nothing else.
-
-    Tasks that see as much are padded to one length, so that those with as many runs share compiled code.
-    """
+    """The lesson of each: its expert demonstrates, and its task sees those days and nothing else."""
     made: dict[str, Lesson] = {}
     for model in dict.fromkeys(one.pupil.model for one in wanted):
         made |= _alike(case, expert, store, [one for one in wanted if one.pupil.model == model])
@@ -105,23 +98,20 @@ def _alike(case: Case, expert: Expert, store: Store, wanted: Sequence[Imitation]
     shown = {one.label: _shown(one, expert, store, sights[one.label]) for one in wanted}
     sight = sights[wanted[0].label]
     seen = {days: sight.learning(days) for days in {one.days for one in wanted}}
-    together = task.stack(
-        [
-            demonstrated_task(expert, shown[one.label], seed, seen[one.days])
-            for one in wanted
-            for seed in range(one.seeds)
-        ]
-    )
-    ends = list(accumulate(one.seeds for one in wanted))
     return {
         one.label: Lesson(
             label=one.label,
             algorithm=one.algorithm,
-            task=jax.tree.map(lambda x, part=slice(*part): x[part], together),
+            task=stack(
+                [
+                    demonstrated_task(expert, shown[one.label], seed, seen[one.days])
+                    for seed in range(one.seeds)
+                ]
+            ),
             basis=fingerprint("lesson", case.home, shown[one.label].mark, sights[one.label].mark),
             sight=sights[one.label],
         )
-        for one, part in zip(wanted, zip([0, *ends], ends, strict=False), strict=True)
+        for one in wanted
     }
 
 
