@@ -13,6 +13,7 @@ from hemma.data.gaps import counted, fill_gaps
 from hemma.data.pecan_street.circuits import Circuits, HomePower, home_power, instrumented
 from hemma.data.pecan_street.files import dataport_file
 from hemma.data.pecan_street.rows import HomeRows, between, rows_of_home, wall_clock_offsets
+from hemma.data.plausibility import require_plausible
 from hemma.data.surroundings import outdoor_temperature, price
 from hemma.data.time_of_use import TimeOfUse
 from hemma.data.traces import Traces
@@ -114,6 +115,7 @@ def _native(name: str, rows: HomeRows, options: PecanStreetOptions) -> _Power:
     )
     present = _present(power)
     series = tuple(placement.placed(column) for column in present.values())
+    require_plausible(name, clock, tuple(present), series)
     return _Power(clock, tuple(present), series, power.notes)
 
 
