@@ -21,12 +21,15 @@ HIGHEST_BELIEVED = 1e10
 NEGATIVE_MARK = -0.9
 """Marks for no value are below this, noise of a meter [kW] is above."""
 COUNTERS = (2**15 - 1, 2**15, 2**16 - 1, 2**31 - 1, 2**31, 2**32 - 1)
-MARKS = frozenset(
-    nines + tenths for nines in (99, 999, 9999, 99999, 999999) for tenths in (0.0, 0.9, 0.99)
-) | frozenset(value / scale for value in COUNTERS for scale in (1, 10, 100))
+NINES = (99, 999, 9999, 99999, 999999)
+THERMOMETER = (85.0, 127.0)
+"""What the common digital thermometers [degC] say after a reset, and (negative) without a contact."""
+MARKS = np.array(
+    [nines + part for nines in NINES for part in (0.0, 0.9, 0.99)]
+    + [value / scale for value in COUNTERS for scale in (1, 10, 100)]
+    + list(THERMOMETER)
+)
 """Magnitudes that loggers and drivers write where they have no value; marks only where they do not fit."""
-SENSOR_MARKS = (85.0, -127.0)
-"""What the common digital thermometers [degC] say after a reset and without a contact."""
 USUAL_RATIO = {"pv_kw": 8.0, "load_kw": 30.0, "hvac_kw": 30.0}
 """Powers above this multiple of the upper quartile of the positive ones are told."""
 USUAL_POWER = {"pv_kw": 1.0, "load_kw": 10.0, "hvac_kw": 10.0}
@@ -115,9 +118,7 @@ def _far(name: str, values: Series) -> Bool[np.ndarray, "slots"]:
 
 
 def _is_mark(values: Float[np.ndarray, "known"]) -> Bool[np.ndarray, "known"]:
-    return np.isin(np.round(np.minimum(np.abs(values), HIGHEST_BELIEVED), 9), list(MARKS)) | np.isin(
-        values, SENSOR_MARKS
-    )
+    return np.isin(np.abs(values), MARKS)
 
 
 def _is_price(name: str) -> bool:

@@ -15,15 +15,15 @@ from hemma.errors import HemmaError
 LARGEST_MEDIAN_POWER = 40.0
 """A column of power [kW] whose median over its positive slots is above this is in W."""
 WARMEST_MEDIAN = 45.0
-"""Medians [degC] above this are degF; between the two below they are K."""
-KELVIN = (180.0, 340.0)
+"""Medians [degC] above this are another unit: K if all values lie between the two below, else degF."""
+KELVIN = (200.0, 335.0)
 FAHRENHEIT = (60.0, 140.0)
 FAHRENHEIT_SHARE = 0.01
 """More values than this in the range of a summer in degF are no failed sensor but another unit."""
 LARGEST_MEDIAN_PRICE = 3.0
 """Prices whose median magnitude is above this [currency/kWh] are in cents, or in currency/MWh."""
 SMALLEST_POWER = 0.05
-"""A home whose load never exceeds this [kW] is no home: its column is in MW, or was divided twice."""
+"""A column of power that never exceeds this [kW] is perhaps in MW, or was divided twice."""
 NIGHT_SHARE = 0.01
 """Share of the PV energy between 22:00 and 04:00 that hints at a wrong clock."""
 NOON_RANGE = (9.5, 16.5)
@@ -72,12 +72,14 @@ def _temperature_problem(name: str, values: Float[np.ndarray, "known"]) -> str |
     median = float(np.median(values))
     found = f"{name} runs from {values.min():.4g} to {values.max():.4g} degC (median {median:.4g})"
     summer = np.mean((values > FAHRENHEIT[0]) & (values < FAHRENHEIT[1]))
-    if KELVIN[0] < median < KELVIN[1]:
+    if KELVIN[0] < values.min() and values.max() < KELVIN[1]:
         return f"{found}: expected degrees Celsius, this looks like kelvin. Subtract 273.15"
     if WARMEST_MEDIAN < median < FAHRENHEIT[1] or (summer > FAHRENHEIT_SHARE and median < FAHRENHEIT[1]):
         return f"{found}: expected degrees Celsius, this looks like Fahrenheit. Convert: (F - 32) / 1.8"
     if median > WARMEST_MEDIAN:
-        return f"{found}: expected degrees Celsius. Convert the column: it is in no unit that is known here"
+        return (
+            f"{found}: expected degrees Celsius, this is no unit known here. Convert it (divide tenths by 10)"
+        )
     return None
 
 
@@ -122,6 +124,8 @@ def oddities(traces: Traces, clock: Clock, columns: Mapping[str, Series]) -> tup
     for name, column in columns.items():
         notes += unusual_cells(name, clock, column)
         notes += stuck_cells(name, clock, column)
+        if name.endswith("_kw") and 0 < column.max() < SMALLEST_POWER:
+            notes.append(f"{name} is at most {column.max():.3g} kW: is it in kW?")
     sun = solar_clock(traces)
     if sun is None:
         notes.append("pv_kw is zero throughout: a home without PV")
@@ -138,6 +142,4 @@ def oddities(traces: Traces, clock: Clock, columns: Mapping[str, Series]) -> tup
     ):
         if mask.any():
             notes.append(f"{what} in {duration(int(mask.sum()) * traces.slot_length)}")
-    if e.load.max() < SMALLEST_POWER:
-        notes.append(f"load_kw is at most {e.load.max():.3g} kW: is it in kW?")
     return tuple(notes)
