@@ -86,6 +86,14 @@ def test_it_is_told_how_many_times_the_median_it_is(write):
     assert f"15000 kW at {MOMENT}, 7500 times the median" in refusal(write(one("hvac_kw", 15000.0), FULL))
 
 
+def test_a_counter_that_runs_backwards_is_a_cell_not_a_sign(write):
+    message = refusal(write(one("load_kw", -15234.7), FULL))
+    assert f"one slot of load_kw is not to be believed, -15234.7 kW at {MOMENT}" in message
+    assert "sign" not in message
+    turned = [("pv_kw", k, -1000.0 * sun(t)) for k, t in enumerate(stamps(480))]
+    assert "this looks like W. Divide by 1000" in refusal(write(log(turned), FULL))
+
+
 def test_several_absurd_cells_are_counted(write):
     message = refusal(write(log([("load_kw", 20, 900.5), ("load_kw", AT, 1200.5)]), FULL))
     assert "2 slots of load_kw are not to be believed, 1200.5 kW at" in message

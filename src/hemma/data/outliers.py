@@ -18,8 +18,6 @@ DEAREST_RATIO = 100.0
 """No market has had prices [currency/kWh] above both the first and this multiple of the median magnitude."""
 HIGHEST_BELIEVED = 1e10
 """Larger magnitudes do not count when a column is judged as a whole."""
-NEGATIVE_MARK = -0.9
-"""Marks for no value are below this, noise of a meter [kW] is above."""
 COUNTERS = (2**15 - 1, 2**15, 2**16 - 1, 2**31 - 1, 2**31, 2**32 - 1)
 NINES = (99, 999, 9999, 99999, 999999)
 THERMOMETER = (85.0, 127.0)
@@ -94,7 +92,7 @@ def stuck_cells(name: str, clock: Clock, column: Series) -> list[str]:
 def _absurd(name: str, values: Float[np.ndarray, "known"]) -> Bool[np.ndarray, "known"]:
     marks = _is_mark(values)
     if name.endswith("_kw"):
-        return (values > NO_HOME) | (marks & ((values < NEGATIVE_MARK) | _far(name, values)))
+        return (np.abs(values) > NO_HOME) | (marks & ((values < 0) | _far(name, values)))
     if name.endswith("_c"):
         return (values > WARMEST) | (values < COLDEST)
     rest = np.abs(believable(values))

@@ -13,7 +13,7 @@ from hemma.data.traces import Traces
 from hemma.errors import HemmaError
 
 LARGEST_MEDIAN_POWER = 40.0
-"""A column of power [kW] whose median over its positive slots is above this is in W."""
+"""A column of power [kW] whose median magnitude, zeros left out, is above this is in W."""
 WARMEST_MEDIAN = 45.0
 """Medians [degC] above this are another unit: K if all values lie between the two below, else degF."""
 KELVIN = (200.0, 335.0)
@@ -58,12 +58,12 @@ def _unit_problem(name: str, values: Float[np.ndarray, "known"]) -> str | None:
 
 
 def _power_problem(name: str, values: Float[np.ndarray, "known"]) -> str | None:
-    positive = values[values > 0]
-    median = float(np.median(positive)) if len(positive) else 0.0
+    sizes = np.abs(values[values != 0])
+    median = float(np.median(sizes)) if len(sizes) else 0.0
     if median <= LARGEST_MEDIAN_POWER:
         return None
     return (
-        f"{name} reaches {values.max():.4g} kW and its median is {median:.4g} kW, more than a home has: "
+        f"{name} reaches {sizes.max():.4g} kW and its median is {median:.4g} kW, more than a home has: "
         "expected kW, this looks like W. Divide by 1000"
     )
 

@@ -74,7 +74,7 @@ class Repairs:
         if not (self.longest_gap >= 0 and self.noise >= 0):
             raise HemmaError(
                 f"repairs: expected longest_gap and noise of at least 0, got {self.longest_gap} h and "
-                f"{self.noise} kW"
+                f"{self.noise} kW. Correct them"
             )
         require_ratio("selling_ratio", self.selling_ratio)
 

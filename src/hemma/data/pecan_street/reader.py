@@ -128,7 +128,10 @@ def _whole(name: str, power: _Power, options: PecanStreetOptions) -> _Power:
     """The same between its first and last complete row, short holes filled."""
     complete = np.flatnonzero(np.all(np.isfinite(power.series), axis=0))
     if not len(complete):
-        raise HemmaError(f"{name}: expected rows in which {', '.join(power.names)} are known, got none")
+        raise HemmaError(
+            f"{name}: expected rows in which {', '.join(power.names)} are known, got none. Choose "
+            "another home or period"
+        )
     first, stop = int(complete[0]), int(complete[-1]) + 1
     clock, notes = power.clock.window(first, stop), power.notes
     cut = power.clock.slots - clock.slots
@@ -153,7 +156,10 @@ def _resampled(name: str, power: _Power, slot_length: float) -> _Power:
     begins = np.flatnonzero(wall % step == 0)
     slots = (clock.slots - int(begins[0])) // factor if len(begins) else 0
     if slots < 2:
-        raise HemmaError(f"{name}: expected at least two whole slots of {slot_length:g} h, got {slots}")
+        raise HemmaError(
+            f"{name}: expected at least two whole slots of {slot_length:g} h, got {slots}. Take a "
+            "longer period or shorter slots"
+        )
     first = int(begins[0])
     stop = first + slots * factor
     series = tuple(column[first:stop].reshape(slots, factor).mean(axis=1) for column in power.series)

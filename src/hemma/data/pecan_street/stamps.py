@@ -79,7 +79,7 @@ def _parsed(
     if len(bad):
         raise HemmaError(
             f"{name}, line {lines[bad[0]]}: expected a time stamp such as 2018-06-01 00:00:00-05, got "
-            f"{cut(cells[bad[0]])!r} ({counted(len(bad), 'such row')}). Correct it"
+            f"{cut(cells[int(bad[0])])!r} ({counted(len(bad), 'such row')}). Correct it"
         )
     return parsed
 
