@@ -9,8 +9,7 @@ from hemma.results.ledger import open_ledger
 from hemma.results.progress import Progress, Silence
 from hemma.results.store import Store
 from hemma.settings.keys import outside
-from hemma.stages.case import make_case
-from hemma.stages.job import Job, require_different_names, require_writable
+from hemma.stages.job import Job, at_work, checked
 
 __all__ = ["Job", "Stage", "run"]
 
@@ -23,15 +22,14 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     traces or version differ is done again.
     """
     progress = Silence() if progress is None else progress
-    require_different_names(job.homes)
-    cases = [make_case(job.experiment, traces, job.test_from) for traces in job.homes]
-    require_writable(job.folder)
-    ledger = open_ledger(job.folder, Head(job.command, outside(job.experiment)), progress)
-    for case in cases:
-        HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)
-    ledger.close()
-    if last is Stage.REPORT:
-        _report(job.folder, progress)
+    cases = checked(job, is_taught=last > Stage.IDENTIFY)
+    with at_work(job.folder, job.command, progress):
+        ledger = open_ledger(job.folder, Head(job.command, outside(job.experiment)), progress)
+        for case in cases:
+            HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)
+        ledger.close()
+        if last is Stage.REPORT:
+            _report(job.folder, progress)
     return ledger.content
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import hemma
-from hemma.checkpoint import write_atomically
 from hemma.evaluation import Interval, Metrics, interval_kind, summarise
 from hemma.results.comparisons import COMPARED, aggregate, improvements
 from hemma.results.fingerprint import code
@@ -86,14 +85,8 @@ def read_document(folder: Path) -> Any:
     """The results file of an earlier run, or None where there is none that can be read."""
     try:
         return json.loads((folder / RESULTS_FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
-
-
-def write_document(folder: Path, content: dict[str, Any]) -> None:
-    """Write the results file, whole or not at all; NaN is refused, null stands for what is undefined."""
-    text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
-    write_atomically(folder / RESULTS_FILE, (text + "\n").encode())
 
 
 def _identification_document(identified: Identified) -> dict[str, Any]:

@@ -4,9 +4,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hemma.results.document import document, home_document, read_document, write_document
+from hemma.results.document import document, home_document, read_document
 from hemma.results.found import RESULTS_FILE, Head, HomeResults
 from hemma.results.progress import Progress
+from hemma.results.reading import json_text, write_json
+from hemma.results.results import HomeResults as HomeRecord
 
 
 @dataclass
@@ -27,11 +29,11 @@ class Ledger:
         if is_part_of(entry, self.homes.get(results.name)):
             return
         self.homes[results.name] = entry
-        write_document(self.folder, self.content)
+        write_json(self.folder / RESULTS_FILE, self.content)
 
     def close(self) -> None:
         """Remove the schedules and curves that only an earlier results file named."""
-        write_document(self.folder, self.content)
+        write_json(self.folder / RESULTS_FILE, self.content)
         root = self.folder.resolve()
         for name in self.stale - _files(self.homes):
             path = (self.folder / name).resolve()
@@ -45,7 +47,8 @@ class Ledger:
 
 
 def open_ledger(folder: Path, head: Head, progress: Progress) -> Ledger:
-    """The ledger of a folder. Homes measured with other settings or another version are not taken over."""
+    """The ledger of a folder. Homes measured with other settings or another version, and damaged entries, are
+    not taken over."""
     earlier = read_document(folder)
     ledger = Ledger(folder, head)
     if not isinstance(earlier, dict) or not isinstance(earlier.get("homes"), dict):
@@ -53,7 +56,9 @@ def open_ledger(folder: Path, head: Head, progress: Progress) -> Ledger:
     ledger.stale = _files(earlier["homes"])
     now = ledger.content
     if all(earlier.get(key) == now[key] for key in ("schema", "hemma", "code", "settings")):
-        ledger.homes = earlier["homes"]
+        ledger.homes = {name: entry for name, entry in earlier["homes"].items() if _is_whole(entry)}
+        for name in earlier["homes"].keys() - ledger.homes.keys():
+            progress.noticed(f"{folder / RESULTS_FILE}: the entry of {name[:60]} is damaged and left out")
     else:
         progress.noticed(
             f"{folder / RESULTS_FILE} held results of other settings or another version; they are replaced"
@@ -70,13 +75,25 @@ def is_part_of(part: Any, whole: Any) -> bool:
     return part == whole
 
 
+def _is_whole(entry: Any) -> bool:
+    """Whether an entry of a home is as ``home_document`` makes them."""
+    try:
+        HomeRecord.model_validate_json(json_text(entry), strict=True)
+    except (ValueError, RecursionError):
+        return False
+    return True
+
+
 def _files(content: Any) -> set[str]:
     """Schedules and curves that entries of homes name, at whatever depth."""
-    if isinstance(content, list):
-        return set().union(*[_files(item) for item in content])
-    if not isinstance(content, dict):
-        return set()
-    named = {content[key] for key in ("schedule", "curve") if isinstance(content.get(key), str)}
-    listed = content.get("schedules")
-    named |= {item for item in listed if isinstance(item, str)} if isinstance(listed, list) else set()
-    return named.union(*[_files(item) for item in content.values()])
+    named, waiting = set(), [content]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, list):
+            waiting += item
+        elif isinstance(item, dict):
+            waiting += item.values()
+            listed = item.get("schedules")
+            found = [item.get("schedule"), item.get("curve"), *(listed if isinstance(listed, list) else [])]
+            named |= {name for name in found if isinstance(name, str)}
+    return named

@@ -1,11 +1,12 @@
-"""One way to read the JSON files of a results folder as typed values."""
+"""One way to read the JSON files of a results folder as typed values, and one to write them."""
 
 import json
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from hemma.checkpoint import write_atomically
 from hemma.errors import HemmaError
 from hemma.results.records import Record
 
@@ -33,3 +34,13 @@ def read_record(path: Path, kind: type[Kind], expected: str, command: str) -> Ki
             f"{start}; {place}: {first['msg']}, found {str(first['input'])[:60]}. "
             f"Correct it, or run `{command}` again"
         ) from error
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write a file, whole or not at all; NaN is refused, null stands for what is undefined."""
+    write_atomically(path, json_text(content).encode())
+
+
+def json_text(content: Any) -> str:
+    """What ``write_json`` writes."""
+    return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"

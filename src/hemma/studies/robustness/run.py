@@ -1,25 +1,24 @@
 """``hemma robustness``: train what is not trained yet, and let every method meet every fault."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import hemma
-from hemma.checkpoint import write_atomically
 from hemma.evaluation import summarise
 from hemma.results.document import CODE, INTERVAL_KIND, bounds
 from hemma.results.progress import Progress, Silence
+from hemma.results.reading import write_json
 from hemma.results.results import load_results
 from hemma.results.store import Store
 from hemma.settings.experiment import DataEfficiency
 from hemma.settings.keys import outside
-from hemma.stages.case import Case, make_case
+from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
 from hemma.stages.explicit import explicit_lesson, explicit_methods, sweep_comfort_price
 from hemma.stages.identify import identify
-from hemma.stages.job import Job, require_different_names, require_writable
+from hemma.stages.job import Job, at_work, checked
 from hemma.stages.lessons import imitations, lessons
 from hemma.stages.planners import planners
 from hemma.stages.train import Trained, train_lesson, train_lessons
@@ -45,11 +44,10 @@ def run_faults(job: Job, progress: Progress | None = None) -> dict[str, Any]:
     stopped.
     """
     progress = Silence() if progress is None else progress
-    require_different_names(job.homes)
     plain = replace(job.experiment, data_efficiency=DataEfficiency(days=()))
-    cases = [make_case(plain, traces, job.test_from) for traces in job.homes]
-    require_writable(job.folder)
-    return measure_faults(job, [_trained(case, Store(job.folder, case.name, progress)) for case in cases])
+    cases = checked(replace(job, experiment=plain))
+    with at_work(job.folder, job.command, progress):
+        return measure_faults(job, [_trained(case, Store(job.folder, case.name, progress)) for case in cases])
 
 
 def run_stored_faults(
@@ -61,9 +59,10 @@ def run_stored_faults(
     """
     progress = Silence() if progress is None else progress
     job = stored_job(folder, traces, command)
-    require_writable(folder)
-    cases = [make_case(job.experiment, home, job.test_from) for home in job.homes]
-    content = measure_faults(job, [stored_trial(case, Store(folder, case.name, progress)) for case in cases])
+    cases = checked(job)
+    with at_work(folder, command, progress):
+        trials = [stored_trial(case, Store(folder, case.name, progress)) for case in cases]
+        content = measure_faults(job, trials)
     tell_what_differs(load_results(folder), content, progress)
     return content
 
@@ -83,8 +82,7 @@ def measure_faults(job: Job, trials: Sequence[Trial]) -> dict[str, Any]:
     for trial, following in zip(trials, [*trials[1:], *trials[:1]], strict=True):
         case, neighbour = trial.expert.case, None if following is trial else following
         content["homes"][case.name] = _home(case, trial.results(neighbour))
-        text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
-        write_atomically(job.folder / ROBUSTNESS_FILE, (text + "\n").encode())
+        write_json(job.folder / ROBUSTNESS_FILE, content)
     write_robustness_report(job.folder)
     return content
 

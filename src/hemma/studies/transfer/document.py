@@ -1,16 +1,15 @@
 """``transfer.json``: what each method made of each changed home; docs/reward.md explains it."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import hemma
-from hemma.checkpoint import write_atomically
 from hemma.evaluation import summarise
 from hemma.results.document import CODE, INTERVAL_KIND, bounds, method_document
 from hemma.results.found import MethodResults
+from hemma.results.reading import write_json
 from hemma.settings.experiment import Experiment
 from hemma.settings.keys import outside
 from hemma.studies.transfer.changes import Place
@@ -50,8 +49,7 @@ def transfer_document(command: str, experiment: Experiment, measured: Sequence[M
 
 def write_transfer(folder: Path, content: dict[str, Any]) -> None:
     """Write the file, whole or not at all."""
-    text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
-    write_atomically(folder / TRANSFER_FILE, (text + "\n").encode())
+    write_json(folder / TRANSFER_FILE, content)
 
 
 def _place(one: Measured) -> dict[str, Any]:
