@@ -7,6 +7,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 from synthetic_results import save_results, write_results
 
+from hemma.evaluation import RegretSplit
 from hemma.report import write_report
 from hemma.report.canvas import drawing_style, new_figure
 from hemma.report.labels import Label, place_labels
@@ -16,7 +17,7 @@ from hemma.report.panels_improvement import comparison_of, improvement_figure
 from hemma.report.panels_pareto import pareto_figure, sweeps_of
 from hemma.report.panels_regret import regret_figure
 from hemma.report.rows import method_rows
-from hemma.results.findings import Improvement, PairedDifference, RegretSplit
+from hemma.results.findings import Improvement, PairedDifference
 from hemma.results.results import HomeResults, Results, load_results
 
 REGRET_BARS = 3

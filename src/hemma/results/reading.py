@@ -1,4 +1,4 @@
-"""One way to read the JSON files of a results folder as typed values, and one to write them."""
+"""One way to write the JSON files of a results folder and to read them as typed values."""
 
 import json
 from pathlib import Path
@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from hemma.checkpoint import write_atomically
-from hemma.errors import HemmaError
-from hemma.results.records import Record
+from hemma.errors import HemmaError, shortened
+from hemma.record import Record
 
 Kind = TypeVar("Kind", bound=Record)
 
@@ -20,27 +20,43 @@ def read_record(path: Path, kind: type[Kind], expected: str, command: str) -> Ki
     """
     start = f"{path}: expected {expected}"
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = read_json(path)
     except FileNotFoundError as error:
         raise HemmaError(f"{start}, there is no such file. Run `{command}` first") from error
-    except (OSError, ValueError) as error:
+    except (OSError, HemmaError) as error:
         raise HemmaError(f"{start}, cannot read it: {error}. Run `{command}` again") from error
     try:
         return kind.model_validate(content)
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the file"
+        place = ".".join(shortened(part) for part in first["loc"]) or "the file"
         raise HemmaError(
-            f"{start}; {place}: {first['msg']}, found {str(first['input'])[:60]}. "
+            f"{start}; {place}: {first['msg']}, found {shortened(first['input'])}. "
             f"Correct it, or run `{command}` again"
         ) from error
 
 
+def read_json(path: Path) -> Any:
+    """What a JSON file holds; ``HemmaError`` where it is none, ``OSError`` where it cannot be opened."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except RecursionError as error:
+        raise HemmaError("it is nested too deeply") from error
+    except ValueError as error:
+        raise HemmaError(str(error)) from error
+
+
+def write_record(path: Path, record: Record) -> None:
+    """Write a record as JSON, whole or not at all; null stands for what is undefined."""
+    write_json(path, json_content(record))
+
+
 def write_json(path: Path, content: Any) -> None:
-    """Write a file, whole or not at all; NaN is refused, null stands for what is undefined."""
-    write_atomically(path, json_text(content).encode())
+    """Write a JSON file, whole or not at all; NaN is refused."""
+    text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
+    write_atomically(path, (text + "\n").encode())
 
 
-def json_text(content: Any) -> str:
-    """What ``write_json`` writes."""
-    return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+def json_content(record: Record) -> Any:
+    """A record as its file has it."""
+    return record.model_dump(mode="json", by_alias=True)

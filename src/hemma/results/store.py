@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hemma.errors import HemmaError
 from hemma.results.progress import Progress
-from hemma.results.reading import write_json
+from hemma.results.reading import read_json, write_json
 
 
 @dataclass(frozen=True)
@@ -60,8 +61,8 @@ class Store:
     def _read(self, product: str) -> dict[str, Any] | None:
         """A card of which all files are as they were written."""
         try:
-            card = json.loads(self._card(product).read_text(encoding="utf-8"))
-        except (OSError, ValueError, RecursionError):
+            card = read_json(self._card(product))
+        except (OSError, HemmaError):
             return None
         if not isinstance(card, dict) or card.pop("seal", None) != _seal(card):
             return None
@@ -73,7 +74,9 @@ class Store:
 
 
 def _seal(card: dict[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(card, sort_keys=True).encode()).hexdigest()
+    """SHA-256 over what a file says of the card, whatever wrote or read it."""
+    plain = json.loads(json.dumps(card))
+    return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
 
 
 def _digest(path: Path) -> str | None:

@@ -13,9 +13,9 @@ from hemma.errors import HemmaError
 from hemma.forecasting.outlook import Outlook
 from hemma.identification.fit import parted
 from hemma.identification.validation import LONGEST
-from hemma.results.found import RESULTS_FILE
 from hemma.results.lock import LOCK, locked
 from hemma.results.progress import Progress
+from hemma.results.results import RESULTS_FILE
 from hemma.settings.experiment import Experiment
 from hemma.stages.case import Case, make_case
 
