@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 
 def _finite_or_none(value: Any) -> Any:
@@ -17,10 +17,18 @@ def _both_or_none(value: Any) -> Any:
     return value
 
 
+def _ordered(ends: tuple[float, float] | None) -> tuple[float, float] | None:
+    if ends is not None and ends[0] > ends[1]:
+        raise ValueError("the low end should come first")
+    return ends
+
+
 Number = Annotated[float | None, BeforeValidator(_finite_or_none)]
 """A metric, or None where it is undefined."""
-Range = Annotated[tuple[float, float] | None, BeforeValidator(_both_or_none)]
+Range = Annotated[tuple[float, float] | None, BeforeValidator(_both_or_none), AfterValidator(_ordered)]
 """Low and high end of a 95 % interval, or None where there is none."""
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+"""A number that must be there."""
 
 
 class Record(BaseModel):

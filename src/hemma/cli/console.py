@@ -120,8 +120,9 @@ def show_results(folder: Path, content: Any) -> None:
         print_table(folder)
     else:
         for name, home in homes.items():
-            errors = home["identification"]["rmse_c"].items()
-            say(f"{name}: free-run error " + ", ".join(f"{h}: {e:.2g} °C" for h, e in errors))
+            errors = (home["identification"] or {"rmse_c": {}})["rmse_c"].items()
+            known = [f"{horizon}: {error:.2g} °C" for horizon, error in errors if error is not None]
+            say(f"{name}: free-run error " + (", ".join(known) or "unknown"))
     print_recommendations(content)
     report = folder / "report.html"
     say(f"Results: {folder / 'results.json'}")

@@ -67,6 +67,8 @@ Folder = Annotated[
 ]
 
 OUT = Path("results")
+MOST_SEEDS = 1000
+"""Runs of a method that still end; a typo asks for more."""
 
 VERBS = {
     "reproduce": "Run everything: identify, demonstrate, baselines, train, evaluate, report.",
@@ -181,6 +183,6 @@ def chosen_experiment(file: Path | None, seeds: int | None, is_quick: bool) -> "
     experiment = quick(experiment) if is_quick else experiment
     if seeds is None:
         return experiment
-    if seeds < 1:
-        raise HemmaError(f"--seeds: expected a number of runs of at least 1, got {seeds}. Correct it")
+    if not 1 <= seeds <= MOST_SEEDS:
+        raise HemmaError(f"--seeds: expected a number of runs from 1 to {MOST_SEEDS}, got {seeds}. Correct it")
     return replace(experiment, seeds=seeds)
