@@ -5,6 +5,9 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
+MOST = 1e100
+"""No number of a home is as large; sums and squares of such numbers are still numbers."""
+
 
 def _finite_or_none(value: Any) -> Any:
     """JSON has no NaN: a metric that is undefined comes as null, as NaN or as an infinity."""
@@ -17,18 +20,20 @@ def _both_or_none(value: Any) -> Any:
     return value
 
 
-def _ordered(ends: tuple[float, float] | None) -> tuple[float, float] | None:
-    if ends is not None and ends[0] > ends[1]:
+def _ordered(ends: tuple[float, float]) -> tuple[float, float]:
+    if ends[0] > ends[1]:
         raise ValueError("the low end should come first")
     return ends
 
 
-Number = Annotated[float | None, BeforeValidator(_finite_or_none)]
-"""A metric, or None where it is undefined."""
-Range = Annotated[tuple[float, float] | None, BeforeValidator(_both_or_none), AfterValidator(_ordered)]
-"""Low and high end of a 95 % interval, or None where there is none."""
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+Finite = Annotated[float, Field(ge=-MOST, le=MOST)]
 """A number that must be there."""
+Number = Annotated[Finite | None, BeforeValidator(_finite_or_none)]
+"""A metric, or None where it is undefined."""
+Band = Annotated[tuple[Finite, Finite], AfterValidator(_ordered)]
+"""Low and high end."""
+Range = Annotated[Band | None, BeforeValidator(_both_or_none)]
+"""Low and high end of a 95 % interval, or None where there is none."""
 
 
 class Record(BaseModel):

@@ -131,14 +131,12 @@ def test_no_device_is_one_message(tmp_path, start, error, monkeypatch):
     assert not (tmp_path / "out").exists()
 
 
-@every_command
+@pytest.mark.parametrize("command", STARTS.keys() - {"identify"})
 @pytest.mark.usefixtures("no_stage")
-def test_too_many_days_of_demonstrations(tmp_path, start):
-    if start is STARTS["identify"]:
-        pytest.skip("it needs no demonstrations")
+def test_too_many_days_of_demonstrations(tmp_path, command):
     job = tiny_job(tmp_path / "out", replace(tiny_experiment(), demonstration_days=10_000))
     with pytest.raises(HemmaError, match=r"austin2021-2: expected a training period of .*0000 days"):
-        start(job)
+        STARTS[command](job)
     assert not (tmp_path / "out").exists()
 
 

@@ -184,5 +184,5 @@ def chosen_experiment(file: Path | None, seeds: int | None, is_quick: bool) -> "
     if seeds is None:
         return experiment
     if not 1 <= seeds <= MOST_SEEDS:
-        raise HemmaError(f"--seeds: expected a number of runs from 1 to {MOST_SEEDS}, got {seeds}. Correct it")
+        raise HemmaError(f"--seeds: expected from 1 to {MOST_SEEDS} runs, got {seeds}. Correct it")
     return replace(experiment, seeds=seeds)

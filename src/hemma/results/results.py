@@ -7,7 +7,7 @@ from pydantic import Field
 
 from hemma.errors import HemmaError
 from hemma.evaluation import RegretSplit
-from hemma.record import Finite, Record
+from hemma.record import Band, Finite, Record
 from hemma.results.findings import Aggregate, Improvement, ParetoPoint
 from hemma.results.reading import read_record
 from hemma.results.records import (
@@ -32,7 +32,7 @@ class HomeResults(Record):
     slot_length_h: float = Field(gt=0, le=24)
     training: Period | None = None
     test: Period
-    comfort_c: tuple[Finite, Finite]
+    comfort_c: Band
     """T^low and T^upp."""
     identification: Identification | None = None
     optimum: Optimum | None = None
