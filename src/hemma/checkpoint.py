@@ -1,8 +1,10 @@
 """Models and training states on disk: safetensors with a JSON header, written whole or not at all."""
 
+import errno
 import json
 import os
-import tempfile
+import secrets
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,17 +20,36 @@ Tree = TypeVar("Tree")
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write ``content`` to ``path`` by way of a temporary name in the same folder, then rename."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    """Write ``content`` to ``path`` by way of a temporary name in the same folder, then rename.
+
+    A symbolic link is written through. A new file has the mode that the umask leaves, a replaced one keeps
+    its own; one that may not be written is refused, and a device or a pipe is written as it is.
+    """
+    target = Path(os.path.realpath(path))
+    mode = _mode(target)
+    if mode is not None and not stat.S_ISREG(mode):
+        target.write_bytes(content)
+        return
+    if mode is not None and not (mode & 0o222 and os.access(target, os.W_OK)):
+        raise PermissionError(errno.EACCES, "it is write-protected", str(path))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    temporary = target.with_name(f".{secrets.token_hex(8)}.partial")
     try:
-        with os.fdopen(descriptor, "wb") as file:
+        with open(temporary, "xb") as file:
             file.write(content)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
+        if mode is not None:
+            temporary.chmod(stat.S_IMODE(mode))
+        temporary.replace(target)
     except BaseException:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
+
+
+def _mode(path: Path) -> int | None:
+    try:
+        return path.stat().st_mode
+    except FileNotFoundError:
+        return None
 
 
 def save_tree(path: Path, tree: Any, header: Mapping[str, Any]) -> None:
@@ -68,9 +89,13 @@ def load_header(path: Path) -> dict[str, Any]:
     """The header that was saved with a checkpoint."""
     with _opened(path) as file:
         metadata = file.metadata() or {}
-    if "hemma" not in metadata:
+    try:
+        header = json.loads(metadata["hemma"])
+    except (KeyError, ValueError, RecursionError):
+        header = None
+    if not isinstance(header, dict):
         raise HemmaError(f"{path}: expected a Hemma checkpoint, found another safetensors file")
-    return json.loads(metadata["hemma"])
+    return header
 
 
 def _opened(path: Path):

@@ -3,7 +3,10 @@
 import math
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+
+MOST = 1e100
+"""No number of a home is as large; sums and squares of such numbers are still numbers."""
 
 
 def _finite_or_none(value: Any) -> Any:
@@ -17,9 +20,19 @@ def _both_or_none(value: Any) -> Any:
     return value
 
 
-Number = Annotated[float | None, BeforeValidator(_finite_or_none)]
+def _ordered(ends: tuple[float, float]) -> tuple[float, float]:
+    if ends[0] > ends[1]:
+        raise ValueError("the low end should come first")
+    return ends
+
+
+Finite = Annotated[float, Field(ge=-MOST, le=MOST)]
+"""A number that must be there."""
+Number = Annotated[Finite | None, BeforeValidator(_finite_or_none)]
 """A metric, or None where it is undefined."""
-Range = Annotated[tuple[float, float] | None, BeforeValidator(_both_or_none)]
+Band = Annotated[tuple[Finite, Finite], AfterValidator(_ordered)]
+"""Low and high end."""
+Range = Annotated[Band | None, BeforeValidator(_both_or_none)]
 """Low and high end of a 95 % interval, or None where there is none."""
 
 

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tiny_experiment import Watching, every_method, tiny_job
 
 from hemma.checkpoint import load_header, load_shapes
 from hemma.data import load_austin2021
@@ -25,6 +24,7 @@ from hemma.stages.identify import identify
 from hemma.stages.play import play
 from hemma.stages.sight import Sight
 from hemma.stages.train import train_lesson
+from tiny_experiment import Watching, every_method, tiny_job
 
 HOME = "austin2021-2"
 SEEING = ("BC", "BC published", "PPO past")

@@ -8,13 +8,13 @@ import jax
 import numpy as np
 import pytest
 from recomputation import EXOGENOUS, SCHEDULE, complaints, groups
-from tiny_experiment import tiny_experiment
 
 from hemma.evaluation import EqualComfort, evaluate, measure
 from hemma.home import Battery, ExplicitThermalModel, Hvac, Schedule
 from hemma.results.schedules import EXOGENOUS_COLUMNS, SCHEDULE_COLUMNS, write_exogenous, write_schedule
 from hemma.settings.keys import outside
 from hemma.types import Action, Exogenous
+from tiny_experiment import tiny_experiment
 
 RULE = "schedules/austin2021-2/Rule.csv"
 

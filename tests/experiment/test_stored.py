@@ -5,7 +5,6 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from tiny_experiment import Watching, tiny_job
 
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
@@ -18,6 +17,7 @@ from hemma.studies.robustness.run import measure_faults, run_stored_faults
 from hemma.studies.robustness.scenes import scene
 from hemma.studies.robustness.stored import stored_job, stored_trial
 from hemma.studies.robustness.trial import FOREIGN, Trial
+from tiny_experiment import Watching, tiny_job
 
 HOME = "austin2021-2"
 COMMAND = "hemma robustness --for-tests"

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+from hemma.cli.console import ruled
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -10,8 +12,6 @@ if TYPE_CHECKING:
 
 def print_aggregate(console: "Console", results: "Results") -> None:
     """A row a method: the mean over homes and seeds; nothing for a single home."""
-    from rich.table import Table
-
     from hemma.report.aggregate_table import AGGREGATE_HEADINGS, aggregate_table
 
     rows = aggregate_table(results)
@@ -20,9 +20,7 @@ def print_aggregate(console: "Console", results: "Results") -> None:
     title = (
         f"All {len(results.aggregate.homes)} homes: mean, 95 % interval for other seeds and for other homes"
     )
-    table = Table(AGGREGATE_HEADINGS[0], title=title)
-    for heading in AGGREGATE_HEADINGS[1:]:
-        table.add_column(heading, justify="right")
+    table = ruled(title, AGGREGATE_HEADINGS)
     for row in rows:
         table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in row.cells))
     console.print(table)

@@ -1,12 +1,12 @@
 """``hemma compare``: several results folders side by side."""
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hemma.cli.console import WIDTH, print_json
+from hemma.cli.console import print_json, results_console, ruled, say, tell
+from hemma.cli.files import Force, named, require_new
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -15,11 +15,15 @@ if TYPE_CHECKING:
 
 Folders = Annotated[
     list[Path],
-    typer.Argument(metavar="RESULTS...", help="Results folders; the others are compared with the first."),
+    typer.Argument(
+        parser=named,
+        metavar="RESULTS...",
+        help="Results folders; the others are compared with the first.",
+    ),
 ]
 File = Annotated[
     Path | None,
-    typer.Option("--out", metavar="FILE", help="Write it to a file too: .html, .csv or .json."),
+    typer.Option("--out", parser=named, metavar="FILE", help="Write it to a file too: .html, .csv or .json."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
 
@@ -29,11 +33,13 @@ def register(app: typer.Typer) -> None:
     app.command()(compare)
 
 
-def compare(folders: Folders, out: File = None, json: Json = False) -> None:
+def compare(folders: Folders, out: File = None, force: Force = False, json: Json = False) -> None:
     """Set results folders side by side: costs, shares, comfort, and what differs in settings and data."""
     from hemma.report.compare import compare as compare_folders
-    from hemma.report.comparison_files import comparison_document, write_comparison
+    from hemma.report.comparison_files import FORMS, comparison_document, write_comparison
 
+    if out is not None:
+        require_new(out, force, tuple(FORMS))
     comparison = compare_folders(folders)
     if out is not None:
         write_comparison(out, comparison)
@@ -42,29 +48,24 @@ def compare(folders: Folders, out: File = None, json: Json = False) -> None:
     else:
         _print_comparison(comparison)
     if out is not None:
-        typer.echo(f"Comparison: {out}", err=json)
+        (tell if json else say)(f"Comparison: {out}")
 
 
 def _print_comparison(comparison: "Comparison") -> None:
-    from rich.console import Console
-
     from hemma.report.comparison_table import READING, legend
 
-    console = Console(width=None if sys.stdout.isatty() else WIDTH, highlight=False)
+    console = results_console()
     for line in legend(comparison):
-        console.print(line, markup=False)
+        console.print(line)
     _print_disagreements(console, comparison)
     for note in comparison.notes:
-        console.print(f"Note: {note}", markup=False)
+        console.print(f"Note: {note}")
     _print_methods(console, comparison)
     _print_over_homes(console, comparison)
-    console.print(READING, markup=False)
+    console.print(READING)
 
 
 def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
-    from rich.markup import escape
-    from rich.table import Table
-
     from hemma.report.comparison_table import disagreement_rows, letter
 
     rows = disagreement_rows(comparison)
@@ -72,9 +73,9 @@ def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
         console.print("Version, source code and settings are the same in all folders.")
         return
     letters = [letter(place) for place in range(len(comparison.folders))]
-    table = Table("Different", *letters, title="What differs between the folders")
+    table = ruled("What differs between the folders", ("Different", *letters), left=1 + len(letters))
     for row in rows:
-        table.add_row(*map(escape, row))
+        table.add_row(*row)
     console.print(table)
 
 
@@ -84,7 +85,7 @@ def _print_methods(console: "Console", comparison: "Comparison") -> None:
     for home in comparison.homes:
         _print_rows(console, home.home, METHOD_HEADINGS, list(home_rows(home)))
         for note in home.notes:
-            console.print(f"Note: {note}", markup=False)
+            console.print(f"Note: {note}")
 
 
 def _print_over_homes(console: "Console", comparison: "Comparison") -> None:
@@ -96,17 +97,12 @@ def _print_over_homes(console: "Console", comparison: "Comparison") -> None:
 
 
 def _print_rows(console: "Console", title: str, headings: tuple[str, ...], rows: list) -> None:
-    from rich.markup import escape
-    from rich.table import Table
-
-    table = Table(*headings[:2], title=escape(title))
-    for heading in headings[2:]:
-        table.add_column(heading, justify="right")
+    table = ruled(title, headings, left=2)
     last = ""
     for row in rows:
         if last and row.method != last:
             table.add_section()
         texts = [f"{cell.value}\n{cell.detail}".strip() for cell in row.cells]
-        table.add_row("" if row.method == last else escape(row.method), row.folder, *map(escape, texts))
+        table.add_row("" if row.method == last else row.method, row.folder, *texts)
         last = row.method
     console.print(table)

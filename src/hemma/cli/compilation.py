@@ -15,10 +15,10 @@ def keep_compiled_code() -> None:
     """
     if "JAX_COMPILATION_CACHE_DIR" in os.environ or os.environ.get("HEMMA_CACHE") == "off":
         return
-    folder = _folder()
     try:
+        folder = _folder()
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
+    except (OSError, RuntimeError):  # no home directory is a RuntimeError
         return
     if os.access(folder, os.W_OK):
         import jax

@@ -3,14 +3,17 @@
 import json
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
     from hemma.results.progress import Progress
 
 INTERRUPTED = 130
@@ -22,25 +25,54 @@ WIDTH = 120
 COLUMNS = ("Runs", "Energy cost", "Mean deviation", "Gap to optimum", "Share of savings", "Training")
 
 
+def say(line: object) -> None:
+    """A line of results."""
+    sys.stdout.write(f"{line}\n")
+
+
+def tell(message: str) -> None:
+    """A message to whoever watches."""
+    sys.stderr.write(f"{message}\n")
+
+
+def results_console() -> "Console":
+    """For tables on standard output; whatever stands in a name, it is no markup."""
+    from rich.console import Console
+
+    width = None if sys.stdout.isatty() else WIDTH
+    return Console(width=width, markup=False, emoji=False, highlight=False)
+
+
+def ruled(title: str, headings: Sequence[str], left: int = 1) -> "Table":
+    """A table without rows; columns after the first ``left`` hold numbers."""
+    from rich.table import Table
+
+    table = Table(*headings[:left], title=title)
+    for heading in headings[left:]:
+        table.add_column(heading, justify="right")
+    return table
+
+
 @contextmanager
 def going_on_later() -> Iterator[None]:
     """Ctrl-C inside ends the program with a word on how to go on."""
     try:
         yield
     except KeyboardInterrupt as interrupt:
-        typer.echo("\nhemma: kept what was finished; run the same command to go on", err=True)
+        tell("\nhemma: kept what was finished; run the same command to go on")
         raise typer.Exit(INTERRUPTED) from interrupt
 
 
 @contextmanager
 def show_progress() -> "Iterator[Progress]":
-    """Bars on a terminal, plain lines anywhere else."""
+    """Bars on a terminal, plain lines anywhere else; what a library prints meanwhile is no result."""
     if not sys.stderr.isatty():
-        yield PlainLines()
+        with redirect_stdout(sys.stderr):
+            yield PlainLines()
         return
     from hemma.cli.bars import show_bars
 
-    with show_bars() as bars:
+    with redirect_stdout(sys.stderr), show_bars() as bars:
         yield bars
 
 
@@ -54,30 +86,31 @@ class PlainLines:
     def started(self, stage: str, total: int) -> None:
         """The stage begins."""
         self._total, self._spoke = total, time.monotonic()
-        typer.echo(f"{stage} ...", err=True)
+        tell(f"{stage} ...")
 
     def advanced(self, stage: str, done: int, message: str) -> None:
         """A line when the last one is ten seconds ago."""
         if time.monotonic() - self._spoke >= SILENCE:
             self._spoke = time.monotonic()
-            typer.echo(f"{stage}: {done} of {self._total}. {message}".rstrip(". "), err=True)
+            tell(f"{stage}: {done} of {self._total}. {message}".rstrip(". "))
 
     def finished(self, stage: str, message: str) -> None:
         """The stage is over."""
-        typer.echo(f"{stage}: {message}", err=True)
+        tell(f"{stage}: {message}")
 
     def reused(self, stage: str, message: str) -> None:
         """The stage was not run."""
-        typer.echo(f"{stage}: kept from an earlier run, {message}", err=True)
+        tell(f"{stage}: kept from an earlier run, {message}")
 
     def noticed(self, message: str) -> None:
         """Something to know."""
-        typer.echo(f"note: {message}", err=True)
+        tell(f"note: {message}")
 
 
 def print_json(content: Any) -> None:
-    """Results for programs."""
-    typer.echo(json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False))
+    """Results for programs; escaped where the encoding could not show them."""
+    is_complete = sys.stdout.encoding.lower().startswith("utf")
+    say(json.dumps(content, indent=1, allow_nan=False, ensure_ascii=not is_complete))
 
 
 def show_results(folder: Path, content: Any) -> None:
@@ -87,54 +120,44 @@ def show_results(folder: Path, content: Any) -> None:
         print_table(folder)
     else:
         for name, home in homes.items():
-            errors = home["identification"]["rmse_c"].items()
-            typer.echo(f"{name}: free-run error " + ", ".join(f"{h}: {e:.2g} °C" for h, e in errors))
+            errors = (home["identification"] or {"rmse_c": {}})["rmse_c"].items()
+            known = [f"{horizon}: {error:.2g} °C" for horizon, error in errors if error is not None]
+            say(f"{name}: free-run error " + (", ".join(known) or "unknown"))
     print_recommendations(content)
     report = folder / "report.html"
-    typer.echo(f"Results: {folder / 'results.json'}")
+    say(f"Results: {folder / 'results.json'}")
     if report.is_file():
-        typer.echo(f"Report: {report}")
+        say(f"Report: {report}")
 
 
 def print_recommendations(content: Any) -> None:
     """Which controller each home should have, where that was judged."""
-    from rich.console import Console
-    from rich.table import Table
-
     from hemma.report.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
     from hemma.results.results import HomeResults
 
-    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    console = results_console()
     for name, entry in content["homes"].items():
         if not entry.get("recommendation"):
             continue
         home = HomeResults.model_validate(entry)
-        first, *others = HEADINGS
-        table = Table(first, title=f"{name}: judged on training days alone")
-        for heading in others:
-            table.add_column(heading, justify="right")
+        table = ruled(f"{name}: judged on training days alone", HEADINGS)
         for cells in recommendation_rows(home):
             table.add_row(*cells)
         console.print(table)
-        typer.echo(recommendation_sentence(name, home))
+        say(recommendation_sentence(name, home))
 
 
 def print_table(folder: Path) -> None:
     """The main columns of the results, home by home, then over all homes; the report has all of them."""
-    from rich.console import Console
-    from rich.table import Table
-
     from hemma.cli.aggregate import print_aggregate
     from hemma.report import results_table
     from hemma.results.results import load_results
 
-    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    console = results_console()
     results = load_results(folder)
     rows = results_table(results)
     for home in dict.fromkeys(row.home for row in rows):
-        table = Table("Method", title=f"{home}: mean of the runs, and its 95 % interval")
-        for heading in COLUMNS:
-            table.add_column(heading, justify="right")
+        table = ruled(f"{home}: mean of the runs, and its 95 % interval", ("Method", *COLUMNS))
         for row in rows:
             if row.home == home:
                 cells = (

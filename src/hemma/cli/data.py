@@ -6,13 +6,27 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hemma.cli.console import say
+from hemma.cli.files import Force, named, require_new
+
 if TYPE_CHECKING:
     from hemma.data import TimeOfUse
 
 app = typer.Typer(help="Look at traces and bring them into the canonical form.", no_args_is_help=True)
 
-Canonical = Annotated[Path, typer.Argument(help="Canonical trace file, .csv or .csv.gz.", show_default=False)]
-Dataport = Annotated[Path, typer.Argument(help="Pecan Street Dataport file, .csv, .csv.gz or .tar.gz.")]
+ENDINGS = (".csv", ".csv.gz")
+Canonical = Annotated[
+    Path,
+    typer.Argument(
+        parser=named, metavar="FILE", help="Canonical trace file, .csv or .csv.gz.", show_default=False
+    ),
+]
+Dataport = Annotated[
+    Path,
+    typer.Argument(
+        parser=named, metavar="SOURCE", help="Pecan Street Dataport file, .csv, .csv.gz or .tar.gz."
+    ),
+]
 
 
 @app.command()
@@ -21,33 +35,37 @@ def check(file: Canonical) -> None:
     from hemma.data import read_canonical, report_quality
 
     for line in report_quality(read_canonical(file)):
-        typer.echo(line)
+        say(line)
 
 
 @app.command()
 def export(
     file: Canonical,
     home: Annotated[int, typer.Option("--home", help="Number of the embedded home, 1 to 6.")] = 1,
+    force: Force = False,
 ) -> None:
     """Write an embedded home as a canonical trace file: an example to fill with your own numbers."""
     from hemma.data import load_austin2021, write_canonical
 
+    require_new(file, force, ENDINGS)
     traces = load_austin2021(home)
     write_canonical(traces, file)
-    typer.echo(f"{file}: {traces.slots} slots of {traces.name}. {traces.source}")
+    say(f"{file}: {traces.slots} slots of {traces.name}. {traces.source}")
 
 
 @app.command()
 def list_pecan_street(
     source: Dataport,
-    metadata: Annotated[Path | None, typer.Option("--metadata", help="Dataport's metadata.csv.")] = None,
+    metadata: Annotated[
+        Path | None, typer.Option("--metadata", parser=named, metavar="FILE", help="Dataport's metadata.csv.")
+    ] = None,
 ) -> None:
     """Say which homes a Pecan Street Dataport file holds and what is instrumented in them."""
     from hemma.data import list_pecan_street_homes
 
     for home in list_pecan_street_homes(source, metadata):
         place = f", {home.city}" if home.city else ""
-        typer.echo(f"{home.home}: {home.first} to {home.last}, {', '.join(home.circuits)}{place}")
+        say(f"{home.home}: {home.first} to {home.last}, {', '.join(home.circuits)}{place}")
 
 
 @dataclass(frozen=True)
@@ -78,10 +96,19 @@ def convert_pecan_street(  # noqa: PLR0913 - a command line has as many options 
     file: Canonical,
     home: Annotated[int, typer.Option("--home", help="dataid of the home.")],
     weather: Annotated[
-        Path, typer.Option("--weather", help="CSV file time,outdoor_c, or Dataport's weather table.")
+        Path,
+        typer.Option(
+            "--weather",
+            parser=named,
+            metavar="FILE",
+            help="CSV file time,outdoor_c, or Dataport's weather table.",
+        ),
     ],
     prices: Annotated[
-        Path | None, typer.Option("--prices", help="CSV file time,buy_per_kwh[,sell_per_kwh].")
+        Path | None,
+        typer.Option(
+            "--prices", parser=named, metavar="FILE", help="CSV file time,buy_per_kwh[,sell_per_kwh]."
+        ),
     ] = None,
     off_peak: Annotated[
         float | None, typer.Option("--off-peak", help="Instead of --prices: price per kWh out of the peak.")
@@ -102,10 +129,12 @@ def convert_pecan_street(  # noqa: PLR0913 - a command line has as many options 
     exclude_battery: Annotated[
         bool, typer.Option("--exclude-battery", help="Take the home's own battery out of the load.")
     ] = False,
+    force: Force = False,
 ) -> None:
     """Write one home of a Pecan Street Dataport file as a canonical trace file; its licence stays with it."""
     from hemma.data import PecanStreetOptions, read_pecan_street, report_quality, write_canonical
 
+    require_new(file, force, ENDINGS)
     options = PecanStreetOptions(
         slot_length=slot_length,
         start=start,
@@ -118,4 +147,4 @@ def convert_pecan_street(  # noqa: PLR0913 - a command line has as many options 
     traces = read_pecan_street(source, home, weather=weather, prices=tariff, options=options)
     write_canonical(traces, file)
     for line in report_quality(traces):
-        typer.echo(line)
+        say(line)

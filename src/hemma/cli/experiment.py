@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hemma.cli.compilation import keep_compiled_code
-from hemma.cli.console import going_on_later, print_json, print_table, show_progress, show_results
+from hemma.cli.console import going_on_later, print_json, print_table, say, show_progress, show_results
+from hemma.cli.files import named
 from hemma.cli.homes import chosen_homes
 
 if TYPE_CHECKING:
@@ -18,7 +19,13 @@ if TYPE_CHECKING:
 
 Traces = Annotated[
     Path | None,
-    typer.Option("--traces", help="Canonical trace file of your own home.", show_default="an embedded home"),
+    typer.Option(
+        "--traces",
+        parser=named,
+        metavar="FILE",
+        help="Canonical trace file of your own home.",
+        show_default="an embedded home",
+    ),
 ]
 Home = Annotated[
     list[int] | None,
@@ -36,9 +43,14 @@ TestFrom = Annotated[
 ]
 Settings = Annotated[
     Path | None,
-    typer.Option("--settings", metavar="FILE.yaml", help="Settings; `hemma settings` prints the defaults."),
+    typer.Option(
+        "--settings",
+        parser=named,
+        metavar="FILE.yaml",
+        help="Settings; `hemma settings` prints the defaults.",
+    ),
 ]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Results folder.")]
+Out = Annotated[Path, typer.Option("--out", parser=named, metavar="DIR", help="Results folder.")]
 Seeds = Annotated[
     int | None,
     typer.Option("--seeds", help="Runs of each learned method instead of the number in the settings."),
@@ -50,9 +62,13 @@ Json = Annotated[bool, typer.Option("--json", help="Print results.json instead o
 Week = Annotated[
     int, typer.Option("--week", help="Which week of the test period the time plots show, from 1.")
 ]
-Folder = Annotated[Path, typer.Argument(help="Results folder of an earlier run.")]
+Folder = Annotated[
+    Path, typer.Argument(parser=named, metavar="FOLDER", help="Results folder of an earlier run.")
+]
 
 OUT = Path("results")
+MOST_SEEDS = 1000
+"""Runs of a method that still end; a typo asks for more."""
 
 VERBS = {
     "reproduce": "Run everything: identify, demonstrate, baselines, train, evaluate, report.",
@@ -91,7 +107,7 @@ def report(folder: Folder = OUT, week: Week = 1) -> None:
 
     path = write_report(folder, week)
     print_table(folder)
-    typer.echo(path)
+    say(path)
 
 
 def settings(file: Settings = None) -> None:
@@ -99,7 +115,7 @@ def settings(file: Settings = None) -> None:
     from hemma.settings.experiment import Experiment
     from hemma.settings.file import read_settings, settings_text
 
-    typer.echo(settings_text(Experiment() if file is None else read_settings(file)), nl=False)
+    say(settings_text(Experiment() if file is None else read_settings(file)).rstrip("\n"))
 
 
 def _command(verb: str):
@@ -167,6 +183,6 @@ def chosen_experiment(file: Path | None, seeds: int | None, is_quick: bool) -> "
     experiment = quick(experiment) if is_quick else experiment
     if seeds is None:
         return experiment
-    if seeds < 1:
-        raise HemmaError(f"--seeds: expected a number of runs of at least 1, got {seeds}. Correct it")
+    if not 1 <= seeds <= MOST_SEEDS:
+        raise HemmaError(f"--seeds: expected from 1 to {MOST_SEEDS} runs, got {seeds}. Correct it")
     return replace(experiment, seeds=seeds)

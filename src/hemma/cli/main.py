@@ -10,6 +10,8 @@ import typer
 
 import hemma
 from hemma.cli import compare, data, experiment, robustness, transfer
+from hemma.cli.console import say, tell
+from hemma.cli.streams import part_streams
 from hemma.errors import HemmaError
 
 MISTAKE = 2
@@ -38,8 +40,12 @@ transfer.register(app)
 
 def run() -> None:
     """Entry point: a user's mistake becomes one message on standard error, never a traceback."""
+    part_streams()
     try:
-        app()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
     except HemmaError as error:
         _stop(str(error))
     except OSError as error:
@@ -50,13 +56,13 @@ def run() -> None:
 
 
 def _stop(message: str) -> None:
-    typer.echo(f"hemma: {message}", err=True)
+    tell(f"hemma: {message}")
     sys.exit(MISTAKE)
 
 
 def _print_version(wanted: bool | None) -> bool:
     if wanted:
-        typer.echo(hemma.__version__)
+        say(hemma.__version__)
         raise typer.Exit
     return False
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from hemma.cli.compilation import keep_compiled_code
-from hemma.cli.console import going_on_later, print_json, show_progress
+from hemma.cli.console import going_on_later, print_json, results_console, ruled, say, show_progress
 from hemma.cli.experiment import (
     OUT,
     Home,
@@ -23,12 +23,14 @@ from hemma.cli.experiment import (
     Traces,
     job_of,
 )
+from hemma.cli.files import named
 from hemma.cli.homes import chosen_homes
 
 Every = Annotated[bool, typer.Option("--every", help="Every method in the table that is printed.")]
 Filled = Annotated[
     Path | None,
     typer.Argument(
+        parser=named,
         metavar="[RESULTS]",
         help="A results folder: measure what it holds, with its own settings and homes, and train nothing.",
         show_default=False,
@@ -94,23 +96,18 @@ def _as_it_is(folder: Path, request: Request) -> Any:
 
 
 def _print_table(folder: Path, every: bool) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
     from hemma.report.numbers import fine, percent
     from hemma.studies.robustness.records import ROBUSTNESS_FILE, load_robustness
     from hemma.studies.robustness.report import TABLE_FILE, met, shown
 
     found = load_robustness(folder)
     methods = [name for name in shown(found) if every or name in PRINTED]
-    table = Table(title="Share of savings at equal comfort, mean deviation in °C", pad_edge=False)
-    table.add_column("Fault", min_width=len("controllers"))
-    for name in methods:
-        table.add_column(name, justify="right")
+    table = ruled("Share of savings at equal comfort, mean deviation in °C", ("Fault", *methods))
+    table.pad_edge, table.columns[0].min_width = False, len("controllers")
     for fault in found.faults:
         cells = [met(found, fault, name) for name in methods]
         table.add_row(fault, *(f"{percent(one.share)}\n{fine(one.deviation)}" for one in cells))
-    Console().print(table)
-    typer.echo(f"Results: {folder / ROBUSTNESS_FILE}")
-    typer.echo(f"Table: {folder / TABLE_FILE}")
-    typer.echo(f"Figure: {folder / 'figures' / 'robustness.png'}")
+    results_console().print(table)
+    say(f"Results: {folder / ROBUSTNESS_FILE}")
+    say(f"Table: {folder / TABLE_FILE}")
+    say(f"Figure: {folder / 'figures' / 'robustness.png'}")

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hemma.cli.compilation import keep_compiled_code
-from hemma.cli.console import WIDTH, going_on_later, print_json, show_progress
+from hemma.cli.console import going_on_later, print_json, results_console, ruled, say, show_progress
 from hemma.cli.experiment import Quick, Seeds, Settings, chosen_experiment
+from hemma.cli.files import named
 
 if TYPE_CHECKING:
     from hemma.studies.transfer.run import TransferJob
 
 Home = Annotated[int, typer.Option("--home", help="Embedded home, 1 to 6.")]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the test's results.")]
+Out = Annotated[
+    Path, typer.Option("--out", parser=named, metavar="DIR", help="Folder of the test's results.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print transfer.json instead of a table.")]
 OUT = Path("transfer")
 
@@ -56,17 +59,12 @@ def _job(home: int, experiment, folder: Path) -> "TransferJob":
 
 
 def _print_tables(folder: Path) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
     from hemma.studies.transfer.records import TRANSFER_FILE, load_transfer
     from hemma.studies.transfer.report import HEADINGS, TABLE_FILE, paired_lines, transfer_rows
 
     found = load_transfer(folder)
-    console = Console(width=None if sys.stdout.isatty() else WIDTH)
-    table = Table(*HEADINGS[:2], title=f"{found.home}: mean of the runs, and its 95 % interval")
-    for heading in HEADINGS[2:]:
-        table.add_column(heading, justify="right")
+    console = results_console()
+    table = ruled(f"{found.home}: mean of the runs, and its 95 % interval", HEADINGS, left=2)
     last = ""
     for row in transfer_rows(found):
         if last and row[0] != last:
@@ -75,7 +73,7 @@ def _print_tables(folder: Path) -> None:
         last = row[0]
     console.print(table)
     for line in paired_lines(found):
-        console.print(line, markup=False)
-    typer.echo(f"Results: {folder / TRANSFER_FILE}")
-    typer.echo(f"Table: {folder / TABLE_FILE}")
-    typer.echo(f"Figures: {folder / 'figures'}")
+        console.print(line)
+    say(f"Results: {folder / TRANSFER_FILE}")
+    say(f"Table: {folder / TABLE_FILE}")
+    say(f"Figures: {folder / 'figures'}")

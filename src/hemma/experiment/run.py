@@ -10,8 +10,7 @@ from hemma.results.progress import Progress, Silence
 from hemma.results.reading import json_content
 from hemma.results.store import Store
 from hemma.settings.keys import outside
-from hemma.stages.case import make_case
-from hemma.stages.job import Job, require_different_names, require_writable
+from hemma.stages.job import Job, at_work, checked
 
 __all__ = ["Job", "Stage", "run"]
 
@@ -24,16 +23,15 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     traces or version differ is done again.
     """
     progress = Silence() if progress is None else progress
-    require_different_names(job.homes)
     learned(job.experiment)  # refuses unknown names before any work
-    cases = [make_case(job.experiment, traces, job.test_from) for traces in job.homes]
-    require_writable(job.folder)
-    ledger = open_ledger(job.folder, job.command, outside(job.experiment), progress)
-    for case in cases:
-        HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)
-    ledger.close()
-    if last is Stage.REPORT:
-        _report(job.folder, progress)
+    cases = checked(job, is_taught=last > Stage.IDENTIFY)
+    with at_work(job.folder, job.command, progress):
+        ledger = open_ledger(job.folder, job.command, outside(job.experiment), progress)
+        for case in cases:
+            HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)
+        ledger.close()
+        if last is Stage.REPORT:
+            _report(job.folder, progress)
     return json_content(ledger.results)
 
 

@@ -55,7 +55,8 @@ def fit(
     ``start`` is the physical response to start from, by default that of constrained least squares.
     Raises ``HemmaError`` when the record is too short for the windows and when the loss is not a number.
     """
-    length, training, validation = _split(record, settings)
+    length, first = parted(record.slots, float(record.slot_length), settings)
+    training, validation = record.window(0, first), record.window(first, record.slots)
     weights_key, batch_key = jax.random.split(key)
     model = PhysicallyConsistentNetwork(
         weights=PcnnWeights.create(weights_key, settings.width, settings.depth),
@@ -71,20 +72,18 @@ def _as_arrays(numbers: Numbers) -> Numbers:
     return jax.tree.map(lambda x: jnp.asarray(x, float), numbers)
 
 
-def _split(
-    record: ThermalRecord, settings: IdentificationSettings
-) -> tuple[int, ThermalRecord, ThermalRecord]:
-    """Slots of a window, the part that trains and the part that validates."""
-    length = max(1, round(settings.window / float(record.slot_length)))
-    first = record.slots - round(settings.validation_share * record.slots)
-    if min(first, record.slots - first) < length:
-        hours = record.slots * float(record.slot_length)
+def parted(slots: int, slot_length: float, settings: IdentificationSettings) -> tuple[int, int]:
+    """Slots of a window, and the first slot of the part of the record that validates."""
+    length = max(1, round(settings.window / slot_length))
+    first = slots - round(settings.validation_share * slots)
+    if min(first, slots - first) < length:
         needed = settings.window / min(settings.validation_share, 1 - settings.validation_share)
         raise HemmaError(
             f"identification: expected a record of at least {needed:g} h for windows of "
-            f"{settings.window:g} h, got {hours:g} h; give a longer period or set a shorter window"
+            f"{settings.window:g} h, got {slots * slot_length:g} h; give a longer period or set a shorter "
+            "window"
         )
-    return length, record.window(0, first), record.window(first, record.slots)
+    return length, first
 
 
 def _run(

@@ -10,6 +10,9 @@ from hemma.home.thermal import AbstractThermalModel, ThermalDrivers, ThermalStat
 from hemma.identification.record import ThermalRecord
 from hemma.types import Array
 
+LONGEST = 24.0
+"""Hours of the longest horizon that is measured."""
+
 
 class FreeRunErrors(eqx.Module):
     """Root mean square errors of the free run [degC]."""
@@ -48,7 +51,7 @@ def free_run_errors(model: AbstractThermalModel, record: ThermalRecord) -> FreeR
     return FreeRunErrors(
         one_hour=_error_after(model, record, 1.0),
         six_hours=_error_after(model, record, 6.0),
-        day=_error_after(model, record, 24.0),
+        day=_error_after(model, record, LONGEST),
         month=float(jnp.sqrt(jnp.mean(whole[1:] ** 2))),
     )
 

@@ -30,16 +30,9 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
 
 def write_comparison(path: Path, comparison: Comparison) -> None:
     """Write the comparison in the form that the file's name asks for: .html, .csv or .json."""
-    forms: dict[str, Callable[[Comparison], str]] = {
-        ".html": comparison_page,
-        ".csv": comparison_csv,
-        ".json": lambda found: json.dumps(comparison_document(found), indent=1, ensure_ascii=False) + "\n",
-    }
-    if path.suffix not in forms:
-        raise HemmaError(
-            f"--out {path}: expected a name that ends in {', '.join(forms)}, got {path.suffix or 'no ending'}"
-        )
-    write_atomically(path, forms[path.suffix](comparison).encode())
+    if path.suffix not in FORMS:
+        raise HemmaError(f"{path}: expected a file name that ends in {', '.join(FORMS)}. Rename it")
+    write_atomically(path, FORMS[path.suffix](comparison).encode())
 
 
 def comparison_csv(comparison: Comparison) -> str:
@@ -113,3 +106,11 @@ def _numbers(found: Measured) -> list[float | None]:
         numbers += [getattr(found.mean, name), low, high, getattr(difference, name)]
     improvement = difference.improvement or Improvement(None, None)
     return [*numbers, improvement.probability, *(_bounds(improvement.interval) or (None, None))]
+
+
+FORMS: dict[str, Callable[[Comparison], str]] = {
+    ".html": comparison_page,
+    ".csv": comparison_csv,
+    ".json": lambda found: json.dumps(comparison_document(found), indent=1, ensure_ascii=False) + "\n",
+}
+"""What a comparison is written as, by the ending of the file's name."""

@@ -29,7 +29,7 @@ class ParetoPoint(Record):
     """[currency] over the test period, a mean where there are several runs."""
     mean_temperature_deviation: Number = None
     """[degC]."""
-    runs: int = 1
+    runs: int = Field(default=1, ge=1)
     schedules: tuple[str, ...] = ()
     """Paths of the runs' schedules inside the folder; none for a proven optimum."""
 

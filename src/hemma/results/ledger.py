@@ -119,11 +119,14 @@ def is_part_of(part: Any, whole: Any) -> bool:
 
 def _files(content: Any) -> set[str]:
     """Schedules and curves that entries of homes name, at whatever depth."""
-    if isinstance(content, list):
-        return set().union(*[_files(item) for item in content])
-    if not isinstance(content, dict):
-        return set()
-    named = {content[key] for key in ("schedule", "curve") if isinstance(content.get(key), str)}
-    listed = content.get("schedules")
-    named |= {item for item in listed if isinstance(item, str)} if isinstance(listed, list) else set()
-    return named.union(*[_files(item) for item in content.values()])
+    named, waiting = set(), [content]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, list):
+            waiting += item
+        elif isinstance(item, dict):
+            waiting += item.values()
+            listed = item.get("schedules")
+            found = [item.get("schedule"), item.get("curve"), *(listed if isinstance(listed, list) else [])]
+            named |= {name for name in found if isinstance(name, str)}
+    return named

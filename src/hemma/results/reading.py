@@ -1,6 +1,7 @@
 """One way to write the JSON files of a results folder and to read them as typed values."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -11,6 +12,8 @@ from hemma.errors import HemmaError, shortened
 from hemma.record import Record
 
 Kind = TypeVar("Kind", bound=Record)
+NO_TEXT = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff]")
+"""Control characters and halves of surrogate pairs: no path, no figure and no terminal takes them."""
 
 
 def read_record(path: Path, kind: type[Kind], expected: str, command: str) -> Kind:
@@ -39,16 +42,35 @@ def read_record(path: Path, kind: type[Kind], expected: str, command: str) -> Ki
 def read_json(path: Path) -> Any:
     """What a JSON file holds; ``HemmaError`` where it is none, ``OSError`` where it cannot be opened."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8"))
     except RecursionError as error:
         raise HemmaError("it is nested too deeply") from error
     except ValueError as error:
-        raise HemmaError(str(error)) from error
+        raise HemmaError(shortened(error)) from error
+    _require_text(content)
+    return content
+
+
+def _require_text(content: Any) -> None:
+    waiting = [content]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, list):
+            waiting += item
+        elif isinstance(item, dict):
+            waiting += [*item, *item.values()]
+        elif isinstance(item, str) and NO_TEXT.search(item):
+            raise HemmaError(f"{shortened(ascii(item))} holds characters that no text has")
 
 
 def write_record(path: Path, record: Record) -> None:
     """Write a record as JSON, whole or not at all; null stands for what is undefined."""
-    text = json.dumps(json_content(record), indent=1, allow_nan=False, ensure_ascii=False)
+    write_json(path, json_content(record))
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write a JSON file, whole or not at all; NaN is refused."""
+    text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
     write_atomically(path, (text + "\n").encode())
 
 

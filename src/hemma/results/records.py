@@ -1,9 +1,15 @@
 """The plain records of ``results.json``: runs, methods, periods, and what is known about a home."""
 
-from pydantic import Field
+from datetime import datetime
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
 
 from hemma.evaluation import IntervalKind, Intervals, Measures, Metrics
-from hemma.record import Number, Record
+from hemma.record import Finite, Number, Record
+
+LONGEST = 10_000_000
+"""Slots of a period; a century of five minutes."""
 
 
 class Run(Measures[Number]):
@@ -58,15 +64,21 @@ class MethodRuns(Record):
 class DemonstrationRuns(MethodRuns):
     """A method trained on demonstrations of a certain length."""
 
-    days: float
+    days: Finite = Field(gt=0)
     method: str
+
+
+def _stamp(text: str) -> str:
+    datetime.fromisoformat(text)
+    return text
 
 
 class Period(Record):
     """A period of the traces."""
 
-    start: str
-    slots: int
+    start: Annotated[str, AfterValidator(_stamp)]
+    """Of the first slot, ISO 8601 with offset."""
+    slots: int = Field(ge=1, le=LONGEST)
 
 
 class Identification(Record):
@@ -111,3 +123,9 @@ class Recommendation(Record):
     """How many days it was judged on."""
     judged: tuple[JudgedMethod, ...] = Field(min_length=1)
     """All methods that stood for it, the simplest first."""
+
+    @model_validator(mode="after")
+    def _require_judged(self) -> "Recommendation":
+        if self.method not in [one.method for one in self.judged]:
+            raise ValueError("the recommended method should be one of those judged")
+        return self

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from hemma.errors import HemmaError
 from hemma.evaluation import RegretSplit
-from hemma.record import Record
+from hemma.record import Band, Finite, Record
 from hemma.results.findings import Aggregate, Improvement, ParetoPoint
 from hemma.results.reading import read_record
 from hemma.results.records import (
@@ -29,15 +29,15 @@ class HomeResults(Record):
     currency: str
     notes: tuple[str, ...] = ()
     traces_sha256: str = ""
-    slot_length_h: float = Field(gt=0)
+    slot_length_h: float = Field(gt=0, le=24)
     training: Period | None = None
     test: Period
-    comfort_c: tuple[float, float]
+    comfort_c: Band
     """T^low and T^upp."""
     identification: Identification | None = None
     optimum: Optimum | None = None
     recommendation: Recommendation | None = None
-    demonstration_days: dict[str, float] = Field(default_factory=dict)
+    demonstration_days: dict[str, Finite] = Field(default_factory=dict)
     """By method, of those that learn from demonstrations."""
     methods: dict[str, MethodRuns] = Field(default_factory=dict)
     """Empty while no method has finished."""

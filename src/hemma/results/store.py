@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hemma.checkpoint import write_atomically
+from hemma.errors import HemmaError
 from hemma.results.progress import Progress
+from hemma.results.reading import read_json, write_json
 
 
 @dataclass(frozen=True)
@@ -16,7 +17,8 @@ class Store:
     """The results folder, as far as one home is concerned.
 
     Every product has a card: a JSON file with the fingerprint of all that the product depends on, the
-    digests of its files, and its content as far as that is small.
+    digests of its files, its content as far as that is small, and a seal over all of them. A card whose seal
+    is broken is none, so whoever reads a content finds what was written.
     """
 
     folder: Path
@@ -44,7 +46,7 @@ class Store:
         """Write the card of a product whose ``files`` (names inside the folder) have just been written."""
         digests = {name: _digest(self.folder / name) for name in files}
         card = {"fingerprint": mark, "files": digests, "content": content}
-        write_atomically(self._card(product), json.dumps(card, indent=1, allow_nan=False).encode())
+        write_json(self._card(product), {**card, "seal": _seal(card)})
 
     def kept(self, product: str, mark: str) -> dict[str, Any] | None:
         """The content of a card with this fingerprint; None if there is none or a file of it was changed."""
@@ -59,16 +61,22 @@ class Store:
     def _read(self, product: str) -> dict[str, Any] | None:
         """A card of which all files are as they were written."""
         try:
-            card = json.loads(self._card(product).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            card = read_json(self._card(product))
+        except (OSError, HemmaError):
             return None
-        if not isinstance(card, dict) or "fingerprint" not in card:
+        if not isinstance(card, dict) or card.pop("seal", None) != _seal(card):
             return None
         unchanged = all(_digest(self.folder / name) == digest for name, digest in card["files"].items())
         return card if unchanged else None
 
     def _card(self, product: str) -> Path:
         return self.folder / self.model(f"{product}.json")
+
+
+def _seal(card: dict[str, Any]) -> str:
+    """SHA-256 over what a file says of the card, whatever wrote or read it."""
+    plain = json.loads(json.dumps(card))
+    return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
 
 
 def _digest(path: Path) -> str | None:

@@ -112,11 +112,11 @@ class _Classroom:
     def _earlier(self) -> tuple[Training | None, float]:
         try:
             header = load_header(self.under_way)
+            if header.get("fingerprint") != self.lesson.mark:
+                return None, 0.0
+            training = load(self.under_way, self.lesson.task, self.lesson.algorithm)
         except HemmaError:
             return None, 0.0
-        if header.get("fingerprint") != self.lesson.mark:
-            return None, 0.0
-        training = load(self.under_way, self.lesson.task, self.lesson.algorithm)
         self.store.progress.noticed(
             f"{self.lesson.label}: going on from iteration {training.iterations} of an interrupted run"
         )

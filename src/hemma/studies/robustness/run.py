@@ -14,10 +14,10 @@ from hemma.results.results import load_results
 from hemma.results.store import Store
 from hemma.settings.experiment import DataEfficiency
 from hemma.settings.keys import outside
-from hemma.stages.case import Case, make_case
+from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
 from hemma.stages.identify import identify
-from hemma.stages.job import Job, require_different_names, require_writable
+from hemma.stages.job import Job, at_work, checked
 from hemma.stages.train import train_all
 from hemma.studies.robustness.records import ROBUSTNESS_FILE, RobustHome, Robustness
 from hemma.studies.robustness.report import write_robustness_report
@@ -32,11 +32,11 @@ def run_faults(job: Job, progress: Progress | None = None) -> Robustness:
     stopped.
     """
     progress = Silence() if progress is None else progress
-    require_different_names(job.homes)
     plain = replace(job.experiment, data_efficiency=DataEfficiency(days=()))
-    cases = [make_case(plain, traces, job.test_from) for traces in job.homes]
-    require_writable(job.folder)
-    return measure_faults(job, [_trained(case, Store(job.folder, case.name, progress)) for case in cases])
+    learned(plain)  # refuses unknown names before any work
+    cases = checked(replace(job, experiment=plain))
+    with at_work(job.folder, job.command, progress):
+        return measure_faults(job, [_trained(case, Store(job.folder, case.name, progress)) for case in cases])
 
 
 def run_stored_faults(
@@ -48,9 +48,10 @@ def run_stored_faults(
     """
     progress = Silence() if progress is None else progress
     job = stored_job(folder, traces, command)
-    require_writable(folder)
-    cases = [make_case(job.experiment, home, job.test_from) for home in job.homes]
-    content = measure_faults(job, [stored_trial(case, Store(folder, case.name, progress)) for case in cases])
+    cases = checked(job)
+    with at_work(folder, command, progress):
+        trials = [stored_trial(case, Store(folder, case.name, progress)) for case in cases]
+        content = measure_faults(job, trials)
     tell_what_differs(load_results(folder), content, progress)
     return content
 

@@ -23,6 +23,7 @@ from hemma.rl.policies.policy import PolicyController
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Expert
 from hemma.stages.identify import IdentifiedBuilding, identify
+from hemma.stages.job import at_work, require_long_enough
 from hemma.stages.judge import Judge, Played
 from hemma.stages.rewards import kept_rewards
 from hemma.stages.train import Lesson, Trained, train_lesson, train_lessons
@@ -66,8 +67,15 @@ def transfer(job: TransferJob, progress: Progress | None = None) -> dict[str, An
 
     Every product is kept in the folder as that of the main job is; the same call goes on where it stopped.
     """
-    store = Store(job.folder, job.traces.name, Silence() if progress is None else progress)
-    settled = _settled(places(job.experiment, job.traces, job.changes, job.test_from), store)
+    progress = Silence() if progress is None else progress
+    tried = places(job.experiment, job.traces, job.changes, job.test_from)
+    require_long_enough(tried[0].case)
+    with at_work(job.folder, job.command, progress):
+        return _transferred(job, tried, Store(job.folder, job.traces.name, progress))
+
+
+def _transferred(job: TransferJob, tried: tuple[Place, ...], store: Store) -> dict[str, Any]:
+    settled = _settled(tried, store)
     first, *changed = settled
     own = airl_lesson(first)
     trained, *anew = train_lessons([own, *map(airl_lesson, changed)], store)
