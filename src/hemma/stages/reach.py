@@ -11,7 +11,7 @@ OUT_OF_REACH = 0.5
 
 
 def unreachable(case: Case) -> list[str]:
-    """What to tell of the periods in which even perfect information deviates by more than ``OUT_OF_REACH``."""
+    """What to tell of periods in which even perfect information deviates by more than ``OUT_OF_REACH``."""
     periods = (("training", case.training), ("test", case.test))
     return [said for name, period in periods if (said := _unreachable(case, name, period)) is not None]
 
@@ -37,5 +37,5 @@ def _cause(case: Case, period: Exogenous) -> str:
         return f"The HVAC only heats and it is {outdoor:.1f} °C outside on average: set hvac.heats to no"
     return (
         f"The HVAC may be too weak ({float(hvac.max_power):g} kW), the building not yours, or a "
-        "temperature in another unit: see hvac, building and comfort in the settings, and outdoor_c in the traces"
+        "temperature in another unit: see hvac, building and comfort in the settings, outdoor_c in the traces"
     )
