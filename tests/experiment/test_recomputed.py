@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import jax
 import numpy as np
@@ -81,7 +81,7 @@ def test_a_home_that_is_not_the_papers_recomputes_too(tmp_path):
     )
     wild = Schedule(Action(random.uniform(-6, 6, 200), random.uniform(-1, 5, 200)))
     outcome = evaluate(experiment.home(0.25), exogenous, wild, jax.random.key(0))
-    metrics = asdict(measure(outcome, EqualComfort(optimum=1.0, no_battery=2.0)))
+    metrics = measure(outcome, EqualComfort(optimum=1.0, no_battery=2.0)).model_dump()
     folder = tmp_path / "schedules" / "odd"
     folder.mkdir(parents=True)
     stamps = [str(slot) for slot in range(200)]

@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hemma.studies.robustness.faults import FaultSettings, faults
+from hemma.results.reading import json_content
+from hemma.settings.faults import FaultSettings
+from hemma.studies.robustness.faults import faults
 from hemma.studies.robustness.records import load_robustness
 from hemma.studies.robustness.report import met, robustness_markdown, robustness_rows, shown
 from hemma.studies.robustness.run import run_faults

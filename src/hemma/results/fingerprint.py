@@ -48,7 +48,11 @@ def plain(value: Any) -> Any:
     if value is None or isinstance(value, str | bool | int | float):
         return value
     if isinstance(value, type | FunctionType):
-        return value.__qualname__
+        return (
+            f"{value.__module__}.{value.__qualname__}"
+            if isinstance(value, FunctionType)
+            else value.__qualname__
+        )
     if isinstance(value, date):
         return value.isoformat()
     if isinstance(value, tuple | list):
