@@ -1,7 +1,6 @@
 """What a file must look like: numbers, quotes, names of columns, line ends, encodings; short messages."""
 
 import gzip
-import subprocess
 import sys
 
 import numpy as np
@@ -10,6 +9,7 @@ from canonical_files import HEADER, refusal, rows, stamps
 from dataport_files import bad_cell, body
 from dataport_files import refusal as dataport_refusal
 
+from hemma.cli.main import run
 from hemma.data import list_pecan_street_homes, read_canonical
 from hemma.errors import HemmaError
 
@@ -157,12 +157,13 @@ def test_a_folder_or_a_damaged_archive_is_no_dataport_file(tmp_path):
         list_pecan_street_homes(tmp_path)
 
 
-def test_the_command_line_says_one_sentence(write):
+def test_the_command_line_says_one_sentence(write, monkeypatch, capsys):
     """Exit status 2, nothing on standard output, no traceback."""
-    path = write(with_load('"0.5'), HEADER)
-    code = "from hemma.cli.main import run; run()"
-    command = [sys.executable, "-c", code, "data", "check", str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith(f"hemma: {path}, line 10: expected quotes in pairs")
-    assert done.stderr.count("\n") == 1
+    path = write(with_load('"0.5'))
+    monkeypatch.setattr(sys, "argv", ["hemma", "data", "check", str(path)])
+    with pytest.raises(SystemExit) as stopped:
+        run()
+    output = capsys.readouterr()
+    assert (stopped.value.code, output.out) == (2, "")
+    assert output.err.startswith(f"hemma: {path}, line 10: expected quotes in pairs")
+    assert output.err.count("\n") == 1
