@@ -73,8 +73,10 @@ def test_export_and_check_of_a_home(hemma, tmp_path):
     [
         (["--home", "7"], ["austin2021", "got 7"]),
         (["--home", "1", "--home", "1"], ["austin2021-1 twice"]),
-        (["--seeds", "0"], ["--seeds", "1 to 1000 runs, got 0"]),
-        (["--seeds", "99999999999999999999"], ["--seeds", "1 to 1000"]),
+        (["--seeds", "0"], ["--seeds", "from 1 to 1000, got 0"]),
+        (["--seeds", "-3"], ["--seeds", "from 1 to 1000, got -3"]),
+        (["--seeds", "99999999999999999999"], ["--seeds", "from 1 to 1000, got 99999999999999999999"]),
+        (["--seeds", "1e20"], ["--seeds"]),
         (["--traces", "missing.csv"], ["missing.csv"]),
         (["--traces", "missing.csv", "--home", "1"], ["leave one of them out"]),
         (["--settings", "missing.yaml"], ["missing.yaml", "cannot read it"]),

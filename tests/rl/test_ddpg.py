@@ -131,7 +131,7 @@ def test_the_critic_steps_towards_its_targets_and_the_actor_uphill():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"capacity": 10}, "capacity for the transitions of a round, got 10"),
+        ({"capacity": 10}, r"capacity >= rollouts \* slots, got 10"),
         ({"following": 0.0}, "0 < following <= 1, got 0.0"),
         ({"iterations": 10}, "iterations a multiple of 25, got 10"),
     ],

@@ -67,8 +67,6 @@ Folder = Annotated[
 ]
 
 OUT = Path("results")
-MOST_SEEDS = 1000
-"""Runs of a method that still end; a typo asks for more."""
 
 VERBS = {
     "reproduce": "Run everything: identify, demonstrate, baselines, train, evaluate, report.",
@@ -178,11 +176,13 @@ def chosen_experiment(file: Path | None, seeds: int | None, is_quick: bool) -> "
     from hemma.errors import HemmaError
     from hemma.settings.experiment import Experiment, quick
     from hemma.settings.file import read_settings
+    from hemma.settings.plausibility import limits_of
 
+    if seeds is not None:
+        try:
+            limits_of(Experiment, "seeds").check(seeds)
+        except ValueError as error:
+            raise HemmaError(f"--seeds: {error}") from error
     experiment = Experiment() if file is None else read_settings(file)
     experiment = quick(experiment) if is_quick else experiment
-    if seeds is None:
-        return experiment
-    if not 1 <= seeds <= MOST_SEEDS:
-        raise HemmaError(f"--seeds: expected from 1 to {MOST_SEEDS} runs, got {seeds}. Correct it")
-    return replace(experiment, seeds=seeds)
+    return experiment if seeds is None else replace(experiment, seeds=seeds)

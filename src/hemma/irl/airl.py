@@ -59,8 +59,8 @@ class AIRLSettings:
         require("airl", whole, f"iterations a multiple of {CHUNK}", self.iterations)
         for name in ("members", "agent_rollouts", "replayed", "steps", "batch"):
             require("airl", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
-        most = f"agent_rollouts of at most rollouts, {self.rollouts}"
-        require("airl", self.agent_rollouts <= self.rollouts, most, self.agent_rollouts)
+        seen = self.agent_rollouts <= self.rollouts
+        require("airl", seen, "agent_rollouts <= rollouts", self.agent_rollouts)
         for name in ("learning_rate", "log_density_bound"):
             require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
         require("airl", self.penalty >= 0, "penalty >= 0", self.penalty)

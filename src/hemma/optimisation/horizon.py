@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from hemma.errors import HemmaError
+from hemma.home.checks import require
 
 
 @dataclass(frozen=True)
@@ -27,13 +27,10 @@ class Horizon:
     def __post_init__(self):
         """Refuse horizons that never arrive."""
         for name, value in (("planned", self.planned), ("carried_out", self.carried_out)):
-            if value is not None and not value > 0:
-                raise HemmaError(f"horizon: expected {name} > 0 hours, got {value}; correct this setting")
-        if self.planned is not None and self.carried_out is not None and self.carried_out > self.planned:
-            raise HemmaError(
-                f"horizon: expected carried_out <= planned, got {self.carried_out} > {self.planned} hours; "
-                "plan at least as far as is carried out"
-            )
+            require("horizon", value is None or value > 0, f"{name} > 0", value)
+        if self.planned is not None and self.carried_out is not None:
+            far = self.carried_out <= self.planned
+            require("horizon", far, "carried_out <= planned", (self.carried_out, self.planned))
 
     def windows(self, slots: int, slot_length: float) -> Iterator[Window]:
         """The plans that cover ``slots`` slots of ``slot_length`` [h]; those near the end are shorter.

@@ -64,7 +64,7 @@ class DDPGSettings:
         require("ddpg", 0 < self.discount < 1, "0 < discount < 1", self.discount)
         require("ddpg", 0 < self.following <= 1, "0 < following <= 1", self.following)
         room = self.capacity >= self.rollouts * self.slots
-        require("ddpg", room, "capacity for the transitions of a round", self.capacity)
+        require("ddpg", room, "capacity >= rollouts * slots", self.capacity)
         wide = all(width >= 1 for width in self.hidden)
         require("ddpg", wide, "hidden layers of at least 1 unit", self.hidden)
 

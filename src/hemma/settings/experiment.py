@@ -151,13 +151,12 @@ class Experiment:
 
     def __post_init__(self):
         """Refuse numbers of runs and days that cannot be."""
-        require("seeds", self.seeds >= 1, "at least 1", self.seeds)
-        for name in ("demonstration_days", "long_demonstration_days"):
-            require(name, getattr(self, name) >= 1, "at least 1", getattr(self, name))
+        for name in ("seeds", "demonstration_days", "long_demonstration_days"):
+            require("experiment", getattr(self, name) >= 1, f"{name} >= 1", getattr(self, name))
         names = self.learned or ()
-        require("learned", len(set(names)) == len(names), "different methods", names)
-        require("forecast_horizon", self.forecast_horizon > 0, "hours > 0", self.forecast_horizon)
-        require("pv", self.pv_scale >= 0, "scale >= 0", self.pv_scale)
+        require("experiment", len(set(names)) == len(names), "different methods as learned", names)
+        require("experiment", self.forecast_horizon > 0, "forecast_horizon > 0", self.forecast_horizon)
+        require("experiment", self.pv_scale >= 0, "pv_scale >= 0", self.pv_scale)
 
     def home(self, slot_length: float) -> Home:
         """The home for slots of ``slot_length`` [h], the building converted exactly."""

@@ -1,7 +1,7 @@
 """Settings as YAML, read and written: one clear message for an unknown key or a value that cannot be."""
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -9,10 +9,10 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from hemma.errors import HemmaError, shortened
+from hemma.errors import HemmaError
 from hemma.settings.experiment import Experiment
-from hemma.settings.keys import explanations, inside, key_of, outside, section
-from hemma.settings.yaml_file import read_yaml
+from hemma.settings.keys import explanations, inside, key_of, outside, section, shown
+from hemma.settings.yaml_file import place_in, read_yaml
 
 
 def read_settings(path: Path) -> Experiment:
@@ -30,7 +30,7 @@ def experiment_of(given: Any, path: Path) -> Experiment:
     try:
         return inside(Experiment, section(Experiment).model_validate(content), given)
     except ValidationError as error:
-        raise HemmaError(f"{path}: {_explained(error, content)}") from error
+        raise HemmaError(f"{path}: {_explained(error, given)}") from error
     except HemmaError as error:
         raise HemmaError(f"{path}: {error}") from error
 
@@ -67,16 +67,40 @@ def _merged(defaults: Any, given: Any) -> Any:
     return {**defaults, **{key: _merged(defaults.get(key), value) for key, value in given.items()}}
 
 
-def _explained(error: ValidationError, content: Any) -> str:
+def _explained(error: ValidationError, given: Any) -> str:
     first = error.errors()[0]
-    place = ".".join(shortened(part) for part in first["loc"]) or "the file"
-    if first["type"] != "extra_forbidden":
-        wrong, came = first["msg"].removeprefix("Value error, "), shortened(repr(first["input"]))
-        return f"{place}: {wrong}, got {came}. Correct it"
-    siblings = content
-    for part in first["loc"][:-1]:
-        siblings = siblings[part]
-    known = [str(key) for key in siblings if key != first["loc"][-1]]
-    near = difflib.get_close_matches(str(first["loc"][-1]), known, 1)
-    hint = f"did you mean {near[0]}?" if near else f"the keys there are {', '.join(known)}"
-    return f"{place}: unknown key; {hint} `hemma settings` prints all of them"
+    loc, came = first["loc"], first["input"]
+    where = place_in(given, loc)
+    if first["type"] == "extra_forbidden":
+        return f"{where}: unknown key; {_meant(loc)} `hemma settings` prints all of them"
+    if first["type"] == "value_error":
+        return f"{where}: {first['msg'].removeprefix('Value error, ')}"
+    if first["type"] == "model_type":
+        return (
+            f"{where}: expected lines such as `{next(iter(_known(loc)))}: ...`, got {shown(came)}. Correct it"
+        )
+    expected = {
+        "tuple_type": "expected a list such as [1, 2]",
+        "missing": "expected one value more",
+        "bool_type": "expected true or false",
+        "bool_parsing": "expected true or false",
+    }.get(first["type"], first["msg"])
+    return f"{where}: {expected}, got {shown(came)}. Correct it"
+
+
+def _meant(loc: Sequence[str | int]) -> str:
+    """Which key an unknown one probably stands for."""
+    known = _known(loc[:-1])
+    names = {name: key for key, name in known.items()}
+    near = difflib.get_close_matches(str(loc[-1]), [*known, *names], 1)
+    return (
+        f"did you mean {names.get(near[0], near[0])}?" if near else f"the keys there are {', '.join(known)};"
+    )
+
+
+def _known(loc: Sequence[str | int]) -> dict[str, str]:
+    """The keys of a section, and the parameters that they stand for."""
+    keys: Any = section(Experiment)
+    for part in loc:
+        keys = next(one.annotation for one in keys.model_fields.values() if one.alias == part)
+    return {str(one.alias): name for name, one in keys.model_fields.items()}

@@ -4,7 +4,7 @@ import ast
 import inspect
 import re
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
 from itertools import pairwise
@@ -14,14 +14,18 @@ from typing import Annotated, Any, Optional, get_args, get_origin, get_type_hint
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
 from hemma.errors import HemmaError, ParameterError, shortened
+from hemma.forecasting.shape import ShapeForecast
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Hvac
 from hemma.identification.excitation import Excitation
 from hemma.identification.settings import IdentificationSettings
+from hemma.irl.cloning import CloningSettings
 from hemma.optimisation.horizon import Horizon
 from hemma.optimisation.hvac import DescentSettings
 from hemma.optimisation.programme import SolverSettings
-from hemma.settings.experiment import Experiment, ParetoSettings
-from hemma.settings.plausibility import complaint
+from hemma.settings.experiment import ComfortPrices, DefaultController, Experiment, ParetoSettings
+from hemma.settings.faults import FaultSettings
+from hemma.settings.plausibility import LONGEST_LIST, LONGEST_WORD, Limits, limits_of
+from hemma.settings.yaml_file import place_in
 from hemma.types import Scalar
 
 NAMES: dict[type, dict[str, str]] = {
@@ -45,35 +49,29 @@ NAMES: dict[type, dict[str, str]] = {
     Horizon: {"planned": "planned_h", "carried_out": "carried_out_h"},
     DescentSettings: {"tolerance": "tolerance_kw"},
     SolverSettings: {"time_limit": "time_limit_s"},
+    CloningSettings: {"held_out": "held_out_every_days"},
+    ComfortPrices: {"tolerance": "tolerance_c"},
+    ParetoSettings: {"relaxations": "relaxations_c"},
+    ShapeForecast: {"history": "history_h", "closeness": "closeness_h"},
+    DefaultController: {"refitted": "refitted_days", "published_at": "published_at_h"},
+    FaultSettings: {
+        "disturbance": "disturbance_c",
+        "temperature_noise": "temperature_noise_c",
+        "margin": "margin_c",
+    },
     Experiment: {
         "initial_temperature": "initial_indoor_c",
         "disturbance_deviation": "thermal_disturbance_c",
+        "forecast_horizon": "forecast_horizon_h",
     },
 }
 """Parameters that have another name in the file than inside, mostly with the unit behind it."""
 
-ANY_SIGN = {
-    (ComfortBand, "low"),
-    (ComfortBand, "high"),
-    (Experiment, "initial_temperature"),
-    (ParetoSettings, "relaxations"),
-}
-"""Parameters that may be negative."""
-
 
 class Keys(BaseModel):
-    """A section of the file; no other keys than these, no NaN and no infinity."""
+    """A section of the file; no other keys than these."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-def _number(value: Any) -> Any:
-    """YAML reads yes, no, on and off as switches; neither they nor a text such as 1_0 is a number."""
-    if isinstance(value, bool):
-        raise ValueError(f"a number is expected, not {'yes' if value else 'no'}")
-    if isinstance(value, str):
-        raise ValueError("a valid number is expected, an integer for a count")
-    return value
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 @cache
@@ -82,7 +80,7 @@ def section(target: type) -> type[Keys]:
     hints = get_type_hints(target)
     content: dict[str, Any] = {
         field.name: (
-            _checked(hints[field.name], (target, field.name) in ANY_SIGN),
+            _checked(hints[field.name], limits_of(target, field.name)),
             Field(alias=key_of(target, field.name)),
         )
         for field in fields(target)
@@ -103,44 +101,41 @@ def outside(value: Any) -> Any:
     return [outside(item) for item in value] if isinstance(value, tuple) else value
 
 
-def inside(target: type, keys: Keys, given: Any, place: str = "") -> Any:
+def inside(target: type, keys: Keys, given: Any, place: tuple[str, ...] = ()) -> Any:
     """The parameters that checked keys stand for.
 
-    A value that is not plausible or contradicts another raises ``HemmaError``, told by the file's keys;
-    ``given`` is what the file says of this section, so that a default can be called one.
+    Values that contradict each other raise ``HemmaError``, told by the file's keys; ``given`` is what the
+    whole file says, so that a default can be called one. ``place`` leads to this section.
     """
-    hints, said = get_type_hints(target), given if isinstance(given, Mapping) else {}
-    values = {}
-    for name in (field.name for field in fields(target)):
-        value, key = getattr(keys, name), key_of(target, name)
+    hints = get_type_hints(target)
+    values = {field.name: getattr(keys, field.name) for field in fields(target)}
+    for name, value in values.items():
         if isinstance(value, Keys):
-            values[name] = inside(hints[name], value, said.get(key), f"{place}{key}.")
-            continue
-        wrong = complaint(target, name, value)
-        if wrong is not None:
-            raise HemmaError(f"{place}{key}: expected {wrong}; got {_told(key, value, said)}. Correct it")
-        values[name] = value
+            values[name] = inside(hints[name], value, given, (*place, key_of(target, name)))
     try:
         return target(**values)
     except ParameterError as error:
-        raise HemmaError(_in_keys(error, target, values, said, place)) from error
+        raise HemmaError(_in_keys(error, target, values, given, place)) from error
 
 
 def _in_keys(
-    error: ParameterError, target: type, values: Mapping[str, Any], given: Mapping[str, Any], place: str
+    error: ParameterError, target: type, values: Mapping[str, Any], given: Any, place: Sequence[str]
 ) -> str:
     """What contradicts what, in the keys of the file, with all values that take part."""
-    named = [name for name in values if re.search(rf"\b{name}\b", error.expected)]
-    expected = error.expected
-    for name in named:
-        expected = re.sub(rf"\b{name}\b", key_of(target, name), expected)
-    came = [f"{key_of(target, n)} {_told(key_of(target, n), values[n], given)}" for n in named]
-    where = place.rstrip(".") or error.owner
+    said = given
+    for key in place:
+        said = said.get(key) if isinstance(said, Mapping) else None
+    said = said if isinstance(said, Mapping) else {}
+    words = [word for word in re.findall(r"\w+", error.expected) if word in values]
+    names = list(dict.fromkeys(words))
+    expected, came = error.expected, []
+    for name in names:
+        key = key_of(target, name)
+        expected = re.sub(rf"\b{name}\b", key, expected)
+        came.append(f"{key} {shortened(outside(values[name]))}" + ("" if key in said else " (the default)"))
+    set_keys = [key_of(target, name) for name in names if key_of(target, name) in said]
+    where = place_in(given, (*place, set_keys[-1]) if len(names) == 1 and set_keys else place)
     return f"{where}: expected {expected}, got {', '.join(came) or shortened(error.came)}. Correct it"
-
-
-def _told(key: str, value: Any, given: Mapping[str, Any]) -> str:
-    return shortened(outside(value)) + ("" if key in given else " (the default)")
 
 
 def explanations(target: type) -> dict[str, str]:
@@ -154,15 +149,45 @@ def explanations(target: type) -> dict[str, str]:
     return found
 
 
-def _checked(hint: Any, any_sign: bool) -> Any:
+def _checked(hint: Any, limits: Limits) -> Any:
     if is_dataclass(hint):
         return section(hint)  # type: ignore[arg-type]
     if get_origin(hint) is tuple:
-        return tuple[tuple(part if part is Ellipsis else _checked(part, any_sign) for part in get_args(hint))]
+        parts = tuple(part if part is Ellipsis else _checked(part, limits) for part in get_args(hint))
+        return Annotated[tuple[parts], Field(max_length=LONGEST_LIST)]
     if get_origin(hint) is UnionType and hint != Scalar:
-        return Optional[_checked(get_args(hint)[0], any_sign)]  # noqa: UP045 - the type is only known now
+        return Optional[_checked(get_args(hint)[0], limits)]  # noqa: UP045 - the type is only known now
     if hint in (float, int, Scalar):
-        kind = int if hint is int else float
-        limit = Field() if any_sign else Field(ge=0)
-        return Annotated[kind, BeforeValidator(_number), limit]
-    return hint
+        return Annotated[int if hint is int else float, BeforeValidator(_number(hint is int, limits))]
+    return Annotated[str, BeforeValidator(_word)] if hint is str else hint
+
+
+def _number(is_whole: bool, limits: Limits) -> Callable[[Any], int | float]:
+    """A check that leaves nothing to conversion: no words, and no yes and no, which YAML has as switches."""
+
+    def check(value: Any) -> int | float:
+        kind = "a whole number" if is_whole else "a number"
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"expected {kind}, got {shown(value)}. Correct it")
+        limits.check(value)
+        if is_whole and value != int(value):
+            raise ValueError(f"expected {kind}, got {value}. Correct it")
+        return value
+
+    return check
+
+
+def _word(value: Any) -> str:
+    if not (isinstance(value, str) and value.isprintable() and 0 < len(value) <= LONGEST_WORD):
+        raise ValueError(
+            f"expected a word of at most {LONGEST_WORD} characters, got {shown(value)}; put quotes around "
+            "what YAML takes for something else"
+        )
+    return value
+
+
+def shown(value: Any) -> str:
+    """What a file says, as a message repeats it."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return "nothing" if value is None else shortened(repr(value))

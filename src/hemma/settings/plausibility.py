@@ -1,134 +1,205 @@
 """Settings that no home, tariff or machine has: mostly a unit that was taken for another.
 
-The limits are far beyond what exists (a battery of 500 kWh, a heat pump of 200 kW); they are there to catch
-watts, Fahrenheit, kelvin and per cent, and counts that would never end.
+The limits lie far beyond what exists (a battery of 500 kWh, a heat pump of 200 kW). They catch watts,
+Fahrenheit, kelvin, cents and per cent, and counts that would never end. They hold for settings that come from
+outside, files and options; in Python any value goes that the classes themselves accept.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from hemma.data import Tariff
+from hemma.errors import shortened
 from hemma.forecasting.shape import ShapeForecast
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Hvac
 from hemma.identification.excitation import Excitation
 from hemma.identification.settings import IdentificationSettings
-from hemma.irl.airl import AIRLSettings
+from hemma.irl.cloning import CloningSettings
+from hemma.irl.maxent import MaxEntSettings
+from hemma.optimisation.hierarchy import HierarchySettings
 from hemma.optimisation.horizon import Horizon
-from hemma.settings.experiment import ComfortPrices, DataEfficiency, Experiment, ParetoSettings
+from hemma.optimisation.hvac import DescentSettings
+from hemma.optimisation.programme import SolverSettings
+from hemma.settings.experiment import (
+    ComfortPrices,
+    DataEfficiency,
+    DefaultController,
+    Experiment,
+    ParetoSettings,
+)
 from hemma.settings.faults import FaultSettings
 
-MOST = 1e6
-"""Of any count that has no limit of its own."""
-LARGEST = 1e9
-"""Of any number that has no limit of its own, as a magnitude."""
-WIDEST = 4096.0
-"""Of a hidden layer [units]."""
+LONGEST_WORD = 40
+"""Characters of a setting that is a word."""
+LONGEST_LIST = 100
+"""Entries of a setting that is a list."""
 
 
 @dataclass(frozen=True)
 class Limits:
     """What a setting may be."""
 
-    low: float
-    high: float
-    what: str
+    low: int | float
+    high: int | float
+    what: str = "a number"
     """With its unit, for the message."""
-    hint: Callable[[float | int], str] = lambda value: ""
-    """What a value outside is probably meant to be."""
+    likely: Callable[[int | float], str] = field(default=lambda value: "")
+    """What a value outside is probably meant in, and how to convert it."""
 
-    def complaint(self, value: float | int) -> str | None:
-        """What is wrong with a value; None if nothing is."""
+    def check(self, value: int | float) -> None:
+        """Raise ``ValueError`` with the whole message for a value outside, NaN among them."""
         if self.low <= value <= self.high:
-            return None
-        hint = self.hint(value)
-        return f"{self.what} from {self.low:g} to {self.high:g}" + (
-            f"; this looks like {hint}" if hint else ""
+            return
+        likely = self.likely(value) if value <= 1000 * self.high else ""
+        raise ValueError(
+            f"expected {self.what} from {self.low:g} to {self.high:g}, got {shortened(value)}"
+            + (f"; this looks like {likely}" if likely else ". Correct it")
         )
 
 
-def _temperature(value: float | int) -> str:
-    if value > 200:
-        return "kelvin, subtract 273.15"
-    return "Fahrenheit, take (F − 32) · 5/9" if value > 35 else ""
+def limits_of(target: type, name: str) -> Limits:
+    """Of a parameter of a class; what has none of its own is at least not negative."""
+    return LIMITS.get(target, {}).get(name) or BY_NAME.get(name) or ANY
 
 
-def _thousandfold(unit: str) -> Callable[[float | int], str]:
-    return lambda value: f"{unit}, divide by 1000" if value > 0 else ""
+def _degrees(value: int | float) -> str:
+    if 200 < value < 400:
+        return "kelvin: subtract 273.15"
+    return "Fahrenheit: take (F - 32) / 1.8" if 35 < value <= 200 else ""
 
 
-def _percent(value: float | int) -> str:
-    return "per cent, divide by 100" if 1 < value <= 100 else ""
+def _above(unit: str) -> Callable[[int | float], str]:
+    return lambda value: unit if value > 0 else ""
 
 
-POWER = Limits(0.0, 200.0, "a power in kW", _thousandfold("W"))
-ENERGY = Limits(0.0, 500.0, "an energy in kWh", _thousandfold("Wh"))
-COMFORT = Limits(5.0, 35.0, "a temperature in °C", _temperature)
-SHARE = Limits(0.0, 1.0, "a fraction", _percent)
-DEGREES = Limits(0.0, 20.0, "a difference in °C")
-HOURS = Limits(0.0, 24.0 * 366, "hours")
-DAYS = Limits(1.0, 3660.0, "days")
-RUNS = Limits(1.0, 1000.0, "runs")
+def _percent(value: int | float) -> str:
+    return "per cent: divide by 100" if 1 < value <= 100 else ""
 
-LIMITS: dict[tuple[type, str], Limits] = {
-    (Battery, "max_energy"): ENERGY,
-    (Battery, "min_energy"): ENERGY,
-    (Battery, "initial_energy"): ENERGY,
-    (Battery, "max_charging_power"): POWER,
-    (Battery, "max_discharging_power"): POWER,
-    (Battery, "charging_efficiency"): SHARE,
-    (Battery, "discharging_efficiency"): SHARE,
-    (Battery, "ageing_cost"): Limits(0.0, 1000.0, "a price per kWh"),
-    (ExplicitThermalModel, "inertia"): SHARE,
-    (ExplicitThermalModel, "efficiency"): Limits(0.0, 20.0, "a coefficient of performance", _percent),
-    (ExplicitThermalModel, "conductance"): Limits(0.0, 50.0, "a conductance in kW/°C", _thousandfold("W/°C")),
-    (Hvac, "max_power"): POWER,
-    (ComfortBand, "low"): COMFORT,
-    (ComfortBand, "high"): COMFORT,
-    (Tariff, "adder_per_kwh"): Limits(0.0, 1000.0, "a price per kWh"),
-    (Tariff, "selling_ratio"): SHARE,
-    (Excitation, "mean_hold"): HOURS,
-    (Excitation, "margin"): DEGREES,
-    (IdentificationSettings, "window"): HOURS,
-    (Horizon, "planned"): HOURS,
-    (Horizon, "carried_out"): HOURS,
-    (ShapeForecast, "history"): HOURS,
-    (DataEfficiency, "days"): DAYS,
-    (DataEfficiency, "seeds"): RUNS,
-    (ComfortPrices, "seeds"): RUNS,
-    (ComfortPrices, "held_out"): SHARE,
-    (ComfortPrices, "tolerance"): DEGREES,
-    (ParetoSettings, "relaxations"): Limits(-10.0, 10.0, "a difference in °C"),
-    (ParetoSettings, "seeds"): RUNS,
-    (AIRLSettings, "members"): Limits(1.0, 100.0, "agents"),
-    (FaultSettings, "runs"): RUNS,
-    (FaultSettings, "disturbance"): DEGREES,
-    (FaultSettings, "temperature_noise"): DEGREES,
-    (FaultSettings, "margin"): DEGREES,
-    (FaultSettings, "energy_noise"): SHARE,
-    (FaultSettings, "demand_noise"): SHARE,
-    (Experiment, "initial_temperature"): Limits(-20.0, 45.0, "a temperature in °C", _temperature),
-    (Experiment, "disturbance_deviation"): DEGREES,
-    (Experiment, "pv_scale"): Limits(0.0, 1000.0, "a factor"),
-    (Experiment, "forecast_horizon"): Limits(0.0, 24.0 * 31, "hours"),
-    (Experiment, "seeds"): RUNS,
-    (Experiment, "demonstration_days"): DAYS,
-    (Experiment, "long_demonstration_days"): DAYS,
+
+def _performance(value: int | float) -> str:
+    if value > 50:
+        return "per cent: divide by 100"
+    return "an EER or SEER in BTU/Wh: divide by 3.412" if value > 1 else ""
+
+
+ANY = Limits(0, 1e9)
+POWER = Limits(0, 200, "a power in kW", _above("W: divide by 1000"))
+ENERGY = Limits(0, 500, "an energy in kWh", _above("Wh: divide by 1000"))
+PRICE = Limits(
+    0,
+    3,
+    "a price per kWh",
+    _above("cents: divide by 100, or by 1000 what is per MWh. If it is right, count in a larger unit"),
+)
+COMFORT = Limits(5, 35, "a temperature in degC", _degrees)
+DIFFERENCE = Limits(0, 10, "a difference in degC")
+EFFICIENCY = Limits(0.3, 1, "an efficiency as a fraction", _percent)
+SHARE = Limits(0, 1, "a fraction", _percent)
+HOURS = Limits(1, 744, "a time in h", _above("minutes: divide by 60"))
+DAYS = Limits(1, 3660, "days")
+RUNS = Limits(1, 1000, "a number of runs")
+FACTOR = Limits(0.01, 1000, "a factor")
+WEIGHT = Limits(0, 10_000, "a weight")
+RATE = Limits(0, 1, "a step of learning")
+SIGMA = Limits(0, 10, "a standard deviation of fractions")
+UNITS = Limits(1, 4096, "units of a layer")
+
+LIMITS: dict[type, dict[str, Limits]] = {
+    Battery: {
+        "max_energy": ENERGY,
+        "min_energy": ENERGY,
+        "initial_energy": ENERGY,
+        "max_charging_power": POWER,
+        "max_discharging_power": POWER,
+        "charging_efficiency": EFFICIENCY,
+        "discharging_efficiency": EFFICIENCY,
+        "ageing_cost": PRICE,
+    },
+    ExplicitThermalModel: {
+        "inertia": SHARE,
+        "efficiency": Limits(0.5, 10, "a coefficient of performance", _performance),
+        "conductance": Limits(0.005, 20, "a conductance in kW/degC", _above("W/degC: divide by 1000")),
+    },
+    Hvac: {"max_power": POWER},
+    ComfortBand: {"low": COMFORT, "high": COMFORT},
+    Tariff: {"adder_per_kwh": PRICE, "selling_ratio": SHARE},
+    Excitation: {
+        "mean_hold": Limits(0.01, 168, "a time in h", _above("minutes: divide by 60")),
+        "extreme_share": SHARE,
+        "margin": DIFFERENCE,
+    },
+    IdentificationSettings: {"window": HOURS},
+    Horizon: {
+        "planned": Limits(0.01, 24 * 3660, "a time in h"),
+        "carried_out": Limits(0.01, 24 * 3660, "a time in h"),
+    },
+    DescentSettings: {"tolerance": Limits(0, 0.1, "a power in kW", _above("W: divide by 1000"))},
+    SolverSettings: {
+        "relative_gap": Limits(0, 0.1, "a fraction", _percent),
+        "time_limit": Limits(0.01, 3600, "a time in s", _above("ms: divide by 1000")),
+    },
+    HierarchySettings: {"seed": Limits(0, 2**31 - 1, "a seed")},
+    MaxEntSettings: {"windows": Limits(1, 10_000, "windows")},
+    CloningSettings: {"held_out": DAYS},
+    ComfortPrices: {"multiples": WEIGHT, "seeds": RUNS, "held_out": SHARE, "tolerance": DIFFERENCE},
+    ParetoSettings: {"relaxations": Limits(-10, 10, "a difference in degC"), "seeds": RUNS},
+    ShapeForecast: {
+        "history": HOURS,
+        "closeness": Limits(0.01, 24, "a time in h", _above("minutes: divide by 60")),
+        "ridge": WEIGHT,
+    },
+    DefaultController: {
+        "refitted": DAYS,
+        "margin": SHARE,
+        "judged": SHARE,
+        "folds": Limits(1, 100, "a number of parts"),
+        "published_at": Limits(0, 24, "an hour of the day"),
+    },
+    FaultSettings: {
+        "disturbance": DIFFERENCE,
+        "temperature_noise": DIFFERENCE,
+        "energy_noise": SHARE,
+        "demand_noise": SHARE,
+        "building": SHARE,
+        "efficiency": EFFICIENCY,
+        "spikes": SHARE,
+        "spike_factor": FACTOR,
+        "household": FACTOR,
+        "runs": RUNS,
+        "margin": DIFFERENCE,
+    },
+    DataEfficiency: {"days": DAYS, "seeds": RUNS},
+    Experiment: {
+        "initial_temperature": Limits(-20, 45, "a temperature in degC", _degrees),
+        "disturbance_deviation": DIFFERENCE,
+        "pv_scale": Limits(0, 50, "a factor", _above("per cent: divide by 100")),
+        "forecast_horizon": HOURS,
+        "seeds": RUNS,
+        "demonstration_days": DAYS,
+        "long_demonstration_days": DAYS,
+    },
 }
+"""Of what is a quantity of the world, or named like one of another class."""
 
-
-def complaint(target: type, name: str, value: object) -> str | None:
-    """What is wrong with the value of a parameter, or with one of several; None if nothing is."""
-    if isinstance(value, tuple):
-        return next((said for item in value if (said := complaint(target, name, item))), None)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    return _limits(target, name, value).complaint(value)
-
-
-def _limits(target: type, name: str, value: float | int) -> Limits:
-    if name == "hidden":
-        return Limits(1.0, WIDEST, "units of a layer")
-    general = (
-        Limits(0.0, MOST, "a count") if isinstance(value, int) else Limits(-LARGEST, LARGEST, "a number")
-    )
-    return LIMITS.get((target, name), general)
+BY_NAME: dict[str, Limits] = {
+    **dict.fromkeys(("hidden", "width"), UNITS),
+    "depth": Limits(1, 16, "a number of layers"),
+    **dict.fromkeys(("iterations", "updates"), Limits(1, 1_000_000, "a number of iterations")),
+    "max_iterations": Limits(1, 100_000, "a number of iterations"),
+    **dict.fromkeys(("chunk", "patience", "replayed"), Limits(1, 100_000, "a count")),
+    **dict.fromkeys(("steps", "epochs", "minibatches"), Limits(1, 10_000, "a count")),
+    **dict.fromkeys(("rollouts", "agent_rollouts"), Limits(1, 10_000, "a number of rollouts")),
+    "slots": Limits(1, 10_000, "a number of slots"),
+    "batch": Limits(1, 100_000, "a number of samples"),
+    "capacity": Limits(1, 10_000_000, "a number of transitions"),
+    "members": Limits(1, 100, "a number of agents"),
+    **dict.fromkeys(("learning_rate", "value_learning_rate", "actor_rate", "critic_rate", "rate"), RATE),
+    **dict.fromkeys(("validation_share", "least_improvement", "relaxing", "shrinking", "averaging"), SHARE),
+    **dict.fromkeys(("discount", "trace", "following"), SHARE),
+    **dict.fromkeys(("gain_penalty", "penalty", "shrinkage", "weight_decay"), WEIGHT),
+    **dict.fromkeys(("first_deviation", "last_deviation"), SIGMA),
+    **dict.fromkeys(("clip", "least_scale"), Limits(0, 100)),
+    "log_density_bound": Limits(0, 1000),
+    "max_gradient_norm": Limits(0, 1e6),
+}
+"""Of the sizes and rates of learning, in whatever class."""
