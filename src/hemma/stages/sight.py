@@ -9,6 +9,7 @@ from jaxtyping import Int
 from hemma.forecasting.observations import PAPER, ObservationModel, Observer
 from hemma.forecasting.outlook import Outlook, yesterday
 from hemma.home import Controller
+from hemma.home.selling import fit_selling
 from hemma.methods.pupils import Pupil
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
@@ -75,12 +76,13 @@ class Sight:
 def sight_of(pupil: Pupil, expert: Expert, store: Store) -> Sight:
     """What a pupil sees; a forecast is the one that the default controller plans with."""
     case, settings = expert.case, expert.case.experiment.default
+    sells_apart = fit_selling(case.training) is None
     if not (pupil.model.forecast or pupil.is_causal):
-        return Sight(case, Observer(pupil.model, yesterday, settings.published_at), (settings.published_at,))
+        observer = Observer(pupil.model, yesterday, settings.published_at, sells_apart)
+        return Sight(case, observer, (settings.published_at,))
     chosen = choose_forecast(expert, store).candidate
-    return Sight(
-        case, Observer(pupil.model, chosen.forecaster, settings.published_at), (chosen.name, settings)
-    )
+    observer = Observer(pupil.model, chosen.forecaster, settings.published_at, sells_apart)
+    return Sight(case, observer, (chosen.name, settings))
 
 
 def informed(controllers: PolicyController, context: Context) -> Controller:
