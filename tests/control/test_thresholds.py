@@ -66,6 +66,15 @@ def test_where_selling_is_dearer_than_buying_the_cheap_energy_is_taken_first():
     assert power(rule, 1.0, 0.1) == pytest.approx(3.0)
 
 
+@pytest.mark.parametrize(
+    ("demand", "selling", "expected"),
+    [(-1.0, 0.05, 1.0), (-1.0, 0.15, 0.0), (1.0, 0.05, -1.0), (1.0, 0.25, -2.28)],
+)
+def test_a_selling_price_that_is_no_line_is_observed(demand, selling, expected):
+    rule = PriceRule(charge_below=0.11, discharge_above=0.20, selling=None)
+    assert power(rule, demand, 0.3, selling) == pytest.approx(expected, abs=1e-6)
+
+
 def two_prices(low: float, high: float, ratio: float = 0.9) -> Exogenous:
     exogenous = periodic(6)
     u = np.where((exogenous.hour_of_day >= 14) & (exogenous.hour_of_day < 20), high, low)
