@@ -52,3 +52,21 @@ def changed_after(exogenous: Exogenous, slot: int) -> Exogenous:
         return np.where(np.arange(len(x)) > slot, 3.0 * x + 0.7, x)
 
     return replace(jax.tree.map(other, exogenous), hour_of_day=exogenous.hour_of_day)
+
+
+def hourly_export(days: int) -> Exogenous:
+    """Import at one price, export dear in the evening and nearly worthless at noon; the same every day."""
+    random, n = np.random.default_rng(1), 24 * days
+    hour, day = np.arange(n) % 24, np.arange(n) // 24
+    sun = 4 * np.clip(np.sin((hour - 6) / 12 * np.pi), 0, None) * (0.7 + 0.3 * random.random(days + 1))[day]
+    load = 0.3 + 0.8 * np.exp(-(((hour - 19) / 2.5) ** 2)) + 0.15 * random.random(n)
+    outdoor = 29 + 6 * np.sin((hour - 9) / 12 * np.pi) + random.normal(0, 0.4, n)
+    evening, noon = (hour >= 16) & (hour < 20), (hour >= 10) & (hour < 15)
+    return Exogenous(
+        pv_generation=sun.round(4),
+        load=load.round(4),
+        outdoor_temperature=outdoor.round(3),
+        buying_price=np.full(n, 0.30),
+        selling_price=np.where(evening, 0.28, np.where(noon, 0.02, 0.08)),
+        hour_of_day=hour.astype(float),
+    )

@@ -78,6 +78,8 @@ class Observation(eqx.Module):
     """T_in [degC] at the start of the slot."""
     buying_price: Float[Array, "*slots"]
     """u [currency/kWh] in the slot."""
+    selling_price: Float[Array, "*slots"]
+    """u- [currency/kWh] in the slot; not in the paper's state."""
     hour_of_day: Float[Array, "*slots"]
     """t' in [0, 24)."""
     previous_hvac_power: Float[Array, "*slots"]

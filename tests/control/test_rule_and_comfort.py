@@ -16,7 +16,7 @@ from hemma.types import Exogenous, Observation
 
 
 def observation(temperature: float, previous: float = 0.7, outdoor: float = 35.0) -> Observation:
-    values = [jnp.asarray(x) for x in (0.0, 0.5, 1.2, outdoor, temperature, 0.1, 12.0, previous)]
+    values = [jnp.asarray(x) for x in (0.0, 0.5, 1.2, outdoor, temperature, 0.1, 0.1, 12.0, previous)]
     return Observation(*values, slot=jnp.asarray(0))
 
 

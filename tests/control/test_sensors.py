@@ -64,6 +64,7 @@ def observation(temperature, energy=3.0, outdoor=32.0):
         zero,
         zero,
         zero,
+        zero,
         jnp.zeros((), int),
     )
 

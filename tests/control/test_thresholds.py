@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from hemma.control.comfort import ComfortHold
 from hemma.control.thresholds import PriceRule, Thresholds, fit_thresholds
-from hemma.forecasting.selling import SellingLine, fit_selling
 from hemma.home import Battery, Controller, Home, Hvac, Trajectory, benchmark_home, replay
 from hemma.home.precision import in_double
+from hemma.home.selling import SellingLine, fit_selling
 from hemma.types import Exogenous
 from small_worlds import noisy, periodic
 
@@ -31,6 +31,12 @@ def run(home: Home, exogenous: Exogenous, controller: Controller) -> Trajectory:
 
 def cost(path: Trajectory) -> float:
     return float(np.sum(path.steps.costs.transaction) + np.sum(path.steps.costs.ageing))
+
+
+def power(rule: PriceRule, demand: float, buying: float, selling: float = float("nan")) -> float:
+    """Battery power [kW] of a battery at 3 kWh; without a line, the rule goes by the ``selling`` price."""
+    inputs = (jnp.asarray(3.0), jnp.asarray(demand), (jnp.asarray(buying), jnp.asarray(selling)))
+    return float(rule.battery_power(Battery(), *inputs, slot_length=1.0))
 
 
 @pytest.mark.parametrize(
@@ -51,16 +57,22 @@ def cost(path: Trajectory) -> float:
 )
 def test_the_rule_by_hand(price, demand, expected):
     rule = PriceRule(charge_below=0.11, discharge_above=0.20, selling=SellingLine(0.8, 0.0))
-    e = rule.battery_power(
-        Battery(), jnp.asarray(3.0), jnp.asarray(float(demand)), jnp.asarray(price), slot_length=1.0
-    )
-    assert float(e) == pytest.approx(expected, abs=1e-6)
+    e = power(rule, demand, price)
+    assert e == pytest.approx(expected, abs=1e-6)
 
 
 def test_where_selling_is_dearer_than_buying_the_cheap_energy_is_taken_first():
     rule = PriceRule(charge_below=0.11, discharge_above=0.20, selling=SellingLine(0.0, 0.3))
-    e = rule.battery_power(Battery(), jnp.asarray(3.0), jnp.asarray(1.0), jnp.asarray(0.1), slot_length=1.0)
-    assert float(e) == pytest.approx(3.0)
+    assert power(rule, 1.0, 0.1) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    ("demand", "selling", "expected"),
+    [(-1.0, 0.05, 1.0), (-1.0, 0.15, 0.0), (1.0, 0.05, -1.0), (1.0, 0.25, -2.28)],
+)
+def test_a_selling_price_that_is_no_line_is_observed(demand, selling, expected):
+    rule = PriceRule(charge_below=0.11, discharge_above=0.20, selling=None)
+    assert power(rule, demand, 0.3, selling) == pytest.approx(expected, abs=1e-6)
 
 
 def two_prices(low: float, high: float, ratio: float = 0.9) -> Exogenous:

@@ -13,8 +13,8 @@ from hemma.forecasting.combined import MeanForecast, RefittedForecast
 from hemma.forecasting.outlook import Outlook, hourly_means, perfect, yesterday
 from hemma.forecasting.published import PublishedPrices
 from hemma.forecasting.ridge import fitted
-from hemma.forecasting.selling import fit_selling
 from hemma.forecasting.shape import ShapeForecast
+from hemma.home.selling import fit_selling
 from hemma.types import Exogenous
 from small_worlds import changed_after, cut, noisy, periodic
 

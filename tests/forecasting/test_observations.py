@@ -9,7 +9,8 @@ import pytest
 from hemma.forecasting.observations import MODELS, QUANTITIES, Observer
 from hemma.forecasting.outlook import Outlook, hourly_means, yesterday
 from hemma.forecasting.published import PublishedPrices
-from small_worlds import changed_after, cut, noisy, periodic
+from hemma.rl.policies.scaling import SELLING
+from small_worlds import changed_after, cut, hourly_export, noisy, periodic
 
 SEEING = tuple(model for model in MODELS.values() if model.name != "paper")
 SIZES = {
@@ -60,6 +61,26 @@ def test_the_last_day_by_hand():
         assert context.kinds[column] == position
     angle = 2 * np.pi * weekdays(48)[slot] / 7
     np.testing.assert_allclose(context.figures[slot, -2:], [np.sin(angle), np.cos(angle)])
+
+
+@pytest.mark.parametrize("model", SEEING, ids=lambda model: model.name)
+def test_a_selling_price_of_its_own_is_seen_as_the_buying_price_is(model):
+    """Behind the figures of the other quantities, and those stay as they are."""
+    exogenous, world = hourly_export(8), outlook(hourly_export(8))
+    plain = seen(model, world)
+    context = Observer(model, hourly_means, sells_apart=True).context(world, weekdays(world.period.slots))
+    own, n = np.flatnonzero(context.kinds == SELLING), world.period.slots
+    assert len(own) == 24 * model.past + 12 * model.looks_ahead
+    others = [place for place in range(len(context.kinds)) if place not in own]
+    others = others[:-1] if model.forecast else others  # the last figure says how it was missed
+    np.testing.assert_array_equal(context.figures[:, others], plain.figures)
+    np.testing.assert_array_equal(
+        context.origins[:, own], np.broadcast_to(exogenous.selling_price[96:, None], (n, len(own)))
+    )
+    if model.looks_ahead:
+        tomorrow = exogenous.selling_price[96 + 11 : 96 + 10 + 25]
+        expected = [f(tomorrow[:w]) for w in (3, 6, 12, 24) for f in (np.min, np.max, np.mean)]
+        np.testing.assert_allclose(context.figures[10, own[-12:]], expected)
 
 
 def test_hours_gone_by_are_means_where_slots_are_short():

@@ -39,6 +39,7 @@ def seen(energy=3.0, indoor=23.0, outdoor=35.0):
         nothing,
         nothing,
         nothing,
+        nothing,
         jnp.asarray(0),
     )
 

@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hemma.control.comfort import ComfortHold
-from hemma.forecasting.selling import SellingLine, fit_selling
 from hemma.home import Battery, Home, replay, transaction_cost
 from hemma.home.comfort import observed_comfort_power
 from hemma.home.precision import in_double
+from hemma.home.selling import SellingLine, fit_selling
 from hemma.types import Action, Array, Exogenous, Observation, Scalar
 
 Ranks = Int[np.ndarray, "ranks"]
@@ -38,14 +38,20 @@ class PriceRule(eqx.Module):
     """p_lo [currency/kWh]."""
     discharge_above: Scalar
     """p_hi [currency/kWh], at least p_lo."""
-    selling: SellingLine
-    """u- beside u+: a controller sees the buying price."""
+    selling: SellingLine | None
+    """u- beside u+ in the training period; None where it is no line, and the observed u- counts."""
 
     def battery_power(
-        self, battery: Battery, energy: Array, net_demand: Array, buying_price: Array, slot_length: Scalar
+        self,
+        battery: Battery,
+        energy: Array,
+        net_demand: Array,
+        prices: tuple[Array, Array],
+        slot_length: Scalar,
     ) -> Array:
-        """e [kW], feasible at ``energy`` [kWh]; ``net_demand`` = l + h - p [kW]."""
-        u, v = buying_price, self.selling(buying_price)
+        """e [kW], feasible at ``energy`` [kWh]; ``net_demand`` = l + h - p [kW], ``prices`` = (u+, u-)."""
+        u, v = prices
+        v = v if self.selling is None else self.selling(u)
         lowest, highest = battery.power_limits(energy, slot_length)
         stored = jnp.where(v < self.charge_below, jnp.clip(-net_demand, 0.0, highest), 0.0)
         used = jnp.where(u > self.discharge_above, jnp.clip(-net_demand, lowest, 0.0), 0.0)
@@ -64,8 +70,9 @@ class Thresholds(eqx.Module):
         """Action of the observed slot [kW]; no randomness."""
         o, home = observation, self.home
         h = observed_comfort_power(home, o)
+        prices = (o.buying_price, o.selling_price)
         e = self.rule.battery_power(
-            home.battery, o.battery_energy, o.load + h - o.pv_generation, o.buying_price, home.slot_length
+            home.battery, o.battery_energy, o.load + h - o.pv_generation, prices, home.slot_length
         )
         return Action(battery_power=e, hvac_power=h)
 
@@ -79,8 +86,8 @@ def fit_thresholds(home: Home, exogenous: Exogenous) -> Thresholds:
     period, and at -inf and inf (never), so nothing depends on currency or scale.
     """
     line = fit_selling(exogenous)
-    u = np.asarray(exogenous.buying_price, float)
-    prices = _between(np.concatenate([u, np.asarray(line(u))]))
+    u, v = (np.asarray(x, float) for x in (exogenous.buying_price, exogenous.selling_price))
+    prices = _between(np.concatenate([u, v if line is None else np.asarray(line(u))]))
     with jax.enable_x64(True):
         inside, exogenous, selling = in_double((home, exogenous, line))
         demand = _comfort_demand(inside, exogenous)
@@ -111,7 +118,7 @@ def _bills(
     home: Home,
     exogenous: Exogenous,
     demand: Float[Array, "slots"],
-    selling: SellingLine,
+    selling: SellingLine | None,
     low: Float[Array, "low"],
     high: Float[Array, "high"],
 ) -> Float[Array, "low high"]:
@@ -123,7 +130,8 @@ def _bills(
 
         def slot(energy: Array, inputs: tuple[Exogenous, Array]) -> tuple[Array, Array]:
             now, net_demand = inputs
-            e = rule.battery_power(battery, energy, net_demand, now.buying_price, dt)
+            prices = (now.buying_price, now.selling_price)
+            e = rule.battery_power(battery, energy, net_demand, prices, dt)
             cost = transaction_cost(net_demand + e, now, dt) + battery.ageing(e, dt)
             return battery.next_energy(energy, e, dt), cost
 

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hemma.errors import HemmaError
-from hemma.home import Home, HomeState, observe, paper_state
+from hemma.home import Home, HomeState, observe
 from hemma.irl.learned_reward import LearnedReward
 from hemma.irl.reoptimise import ground
 from hemma.rl.policies.actions import to_power
@@ -142,8 +142,7 @@ def _answer(run: LearnedReward, home: Home, point: Moment, fractions: Float[Arra
     )
     observation = observe(state, point.now)
     step = home.step(state, point.now, to_power(home, observation, fractions), jnp.zeros(()))
-    after = paper_state(observe(step.state, point.after))
-    seen = run.transitions(paper_state(observation), fractions, after)
+    seen = run.transitions(observation, fractions, observe(step.state, point.after))
     return Answers(
         battery_power=step.action.battery_power,
         next_temperature=step.state.indoor_temperature,

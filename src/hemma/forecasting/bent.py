@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hemma.forecasting.outlook import Outlook, last_known, profile
-from hemma.forecasting.selling import fit_selling
+from hemma.home.selling import fit_selling
 from hemma.types import Array, Exogenous
 
 
@@ -68,8 +68,9 @@ Regression = Callable[[BentSeries], Float[np.ndarray, "slots horizon"]]
 def assembled(outlook: Outlook, regression: Regression) -> Exogenous:
     """The forecast of every quantity by ``regression``, and what is known for certain.
 
-    PV stays below what its time of day has seen, so nights are dark; the selling price lies on the training
-    period's line over the buying price.
+    PV stays below what its time of day has seen, so nights are dark. The selling price lies on the training
+    period's line over the buying price; where it is none, it is forecast as the buying price is, and exceeds
+    it by no more than it has so far.
     """
     joined, asked = outlook.joined(), outlook.targets()
 
@@ -77,7 +78,12 @@ def assembled(outlook: Outlook, regression: Regression) -> Exogenous:
         series = bent_series(outlook, values)
         return series.forecast(regression(series), asked)
 
-    buying_price = expected(joined.buying_price)
+    line, buying_price = fit_selling(outlook.past), expected(joined.buying_price)
+    if line is None:
+        dearest = np.maximum.accumulate(joined.selling_price - joined.buying_price)[outlook.past.slots :]
+        selling_price = np.minimum(expected(joined.selling_price), buying_price + dearest[:, None])
+    else:
+        selling_price = np.asarray(line(buying_price))
     return outlook.with_present(
         Exogenous(
             pv_generation=np.minimum(
@@ -86,7 +92,7 @@ def assembled(outlook: Outlook, regression: Regression) -> Exogenous:
             load=expected(joined.load),
             outdoor_temperature=expected(joined.outdoor_temperature),
             buying_price=buying_price,
-            selling_price=np.asarray(fit_selling(outlook.past)(buying_price)),
+            selling_price=selling_price,
             hour_of_day=outlook.clock()[asked],
         )
     )

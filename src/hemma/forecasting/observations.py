@@ -1,5 +1,6 @@
 """What a policy may see besides the paper's state, by name: the last day, published prices, a forecast."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import jax
@@ -8,12 +9,12 @@ from jaxtyping import Float, Int
 
 from hemma.forecasting.outlook import Forecaster, Outlook, yesterday
 from hemma.forecasting.published import PublishedPrices
-from hemma.rl.policies.scaling import NOTHING, PLAIN, Context
+from hemma.rl.policies.scaling import NOTHING, PLAIN, SELLING, Context
 from hemma.types import Exogenous
 
 QUANTITIES = {"pv_generation": 0, "load": 1, "outdoor_temperature": 3, "buying_price": 5}
 """What is seen of other hours, with its position in the paper's state."""
-PRICE = "buying_price"
+PRICES = ("buying_price", "selling_price")
 WINDOWS = (3.0, 6.0, 12.0, 24.0)
 """How far ahead is looked [h], the present slot left out."""
 WEEK = 7
@@ -84,6 +85,13 @@ class Observer:
     """What is believed of the hours to come where the model has a forecast."""
     published_at: float = 14.0
     """Hour of the day from which tomorrow's prices are known."""
+    sells_apart: bool = False
+    """Whether the selling price is no line of the buying price: then it is seen as the other one is."""
+
+    @property
+    def quantities(self) -> dict[str, int]:
+        """What is seen of other hours, with its position among the scaled quantities."""
+        return QUANTITIES | ({"selling_price": SELLING} if self.sells_apart else {})
 
     def context(self, outlook: Outlook, weekdays: Int[np.ndarray, "slots"]) -> Context:
         """What is seen in each slot of the period that ``outlook`` is about, the past being all before it.
@@ -98,7 +106,7 @@ class Observer:
             return self._assembled(outlook, weekdays, self._published(outlook, yesterday(outlook)), None)
         earlier = _a_day_earlier(outlook)
         rows = self.forecaster(earlier)
-        misses = _misses(earlier, rows)[outlook.day :]
+        misses = _misses(earlier, rows, self.quantities)[outlook.day :]
         ahead = jax.tree.map(lambda x: x[outlook.day :], rows)
         return self._assembled(outlook, weekdays, self._published(outlook, ahead), misses)
 
@@ -164,14 +172,16 @@ class Observer:
         ahead: Exogenous | None,
         misses: Float[np.ndarray, "slots quantities"] | None,
     ) -> Context:
-        parts = []
+        parts, quantities = [], self.quantities
         if self.model.past:
-            parts += [*_last_day(outlook), _plain(_calendar(weekdays))]
+            parts += [*_last_day(outlook, quantities), _plain(_calendar(weekdays))]
         if ahead is not None:
-            parts.append(_coming(outlook, ahead, PRICE, (np.min, np.max, np.mean)))
+            range_and_mean = (np.min, np.max, np.mean)
+            prices = (one for one in quantities.items() if one[0] in PRICES)
+            parts += [_coming(outlook, ahead, price, range_and_mean) for price in prices]
         if self.model.forecast and ahead is not None and misses is not None:
-            others = (name for name in QUANTITIES if name != PRICE)
-            parts += [_coming(outlook, ahead, name, (np.mean,)) for name in others]
+            others = (one for one in quantities.items() if one[0] not in PRICES)
+            parts += [_coming(outlook, ahead, other, (np.mean,)) for other in others]
             parts.append(_plain(misses))
         return _beside(parts) if parts else NOTHING
 
@@ -181,14 +191,14 @@ def _horizon(slot_length: float) -> float:
     return WINDOWS[-1] + slot_length
 
 
-def _last_day(outlook: Outlook) -> list[Context]:
+def _last_day(outlook: Outlook, quantities: dict[str, int]) -> list[Context]:
     """Means over each of the last 24 hours, the newest first, from the present value; one a quantity."""
     joined, first = outlook.joined(), outlook.past.slots
     hour = max(round(1.0 / outlook.slot_length), 1)
     hours = max(outlook.day // hour, 1)
     ends = np.arange(first, first + outlook.period.slots)[:, None] - hour * np.arange(hours)
     parts = []
-    for name, position in QUANTITIES.items():
+    for name, position in quantities.items():
         values = getattr(joined, name)
         total = np.concatenate([[0.0], np.cumsum(values)])
         starts = np.maximum(ends - hour, 0)
@@ -197,9 +207,10 @@ def _last_day(outlook: Outlook) -> list[Context]:
     return parts
 
 
-def _coming(outlook: Outlook, ahead: Exogenous, name: str, statistics: tuple) -> Context:
+def _coming(outlook: Outlook, ahead: Exogenous, quantity: tuple[str, int], statistics: tuple) -> Context:
     """Statistics of the next hours, from the present value."""
-    rows, position = np.asarray(getattr(ahead, name), float), QUANTITIES[name]
+    name, position = quantity
+    rows = np.asarray(getattr(ahead, name), float)
     columns = []
     for window in WINDOWS:
         stop = 1 + max(round(window / outlook.slot_length), 1)
@@ -207,7 +218,7 @@ def _coming(outlook: Outlook, ahead: Exogenous, name: str, statistics: tuple) ->
     return _counted(np.stack(columns, axis=1), np.asarray(getattr(outlook.period, name), float), position)
 
 
-def _misses(outlook: Outlook, rows: Exogenous) -> Float[np.ndarray, "slots quantities"]:
+def _misses(outlook: Outlook, rows: Exogenous, names: Iterable[str]) -> Float[np.ndarray, "slots quantities"]:
     """Of each quantity, how far the forecast of a day ago missed the day since, as a share of its spread.
 
     Root mean square of what row t - 24 h said of the slots since, over the standard deviation of the quantity
@@ -216,7 +227,7 @@ def _misses(outlook: Outlook, rows: Exogenous) -> Float[np.ndarray, "slots quant
     day, slots = outlook.day, outlook.period.slots
     made = np.arange(max(slots - day, 0))[:, None] + np.arange(1, day + 1)
     columns = []
-    for name in QUANTITIES:
+    for name in names:
         truth, said = np.asarray(getattr(outlook.period, name), float), np.asarray(getattr(rows, name), float)
         deviation = float(np.std(np.asarray(getattr(outlook.past, name), float))) or 1.0
         missed = np.full(slots, np.nan)

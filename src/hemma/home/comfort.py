@@ -42,7 +42,7 @@ def observed_comfort_power(home: Home, observation: Observation) -> Array:
         load=o.load,
         outdoor_temperature=o.outdoor_temperature,
         buying_price=o.buying_price,
-        selling_price=o.buying_price,  # prices do not act on the building
+        selling_price=o.selling_price,
         hour_of_day=o.hour_of_day,
     )
     return comfort_power(home, home.thermal_model.initial(o.indoor_temperature), seen)

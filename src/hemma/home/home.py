@@ -169,6 +169,7 @@ def observe(state: HomeState, exogenous: Exogenous) -> Observation:
         outdoor_temperature=exogenous.outdoor_temperature,
         indoor_temperature=state.indoor_temperature,
         buying_price=exogenous.buying_price,
+        selling_price=exogenous.selling_price,
         hour_of_day=exogenous.hour_of_day,
         previous_hvac_power=state.previous_hvac_power,
         slot=state.slot,

@@ -9,13 +9,13 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Float
 
-from hemma.checkpoint import load_header, load_tree, save_tree
+from hemma.checkpoint import load_header, load_shapes, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.irl.reward import ShapedReward
 from hemma.rl.environment import Transitions
 from hemma.rl.policies.policy import FEATURES
 from hemma.rl.policies.scaling import StateScaler
-from hemma.types import Array
+from hemma.types import Array, Observation
 
 KIND = "learned reward"
 
@@ -57,12 +57,12 @@ class LearnedReward(eqx.Module):
 
     def transitions(
         self,
-        states: Float[Array, "*batch 7"],
+        observation: Observation,
         fractions: Float[Array, "*batch actions"],
-        next_states: Float[Array, "*batch 7"],
+        after: Observation,
     ) -> Transitions:
-        """(s, a, s') of states in their units as the head reads them, where it sees the paper's state."""
-        return Transitions(self.scaler(states), fractions, self.scaler(next_states))
+        """(s, a, s') of what is observed as the head reads it, where it sees no context."""
+        return Transitions(self.scaler.observed(observation), fractions, self.scaler.observed(after))
 
 
 def save_rewards(path: Path, rewards: LearnedReward, header: Mapping[str, Any]) -> None:
@@ -88,7 +88,8 @@ def load_rewards(path: Path) -> LearnedReward:
         )
     sizes, width = tuple(header["hidden"]), header.get("features", FEATURES)
     head = ShapedReward.random(sizes, header["discount"], jax.random.key(0), width)
-    one = LearnedReward(head, StateScaler(jnp.zeros(6), jnp.ones(6)))
+    quantities = load_shapes(path)[".scaler.centre"][-1]
+    one = LearnedReward(head, StateScaler(jnp.zeros(quantities), jnp.ones(quantities)))
     axes = tuple(header["axes"])
     runs = axes[:1]  # the members of a committee share the scaler of their run
     like = LearnedReward(_stacked(one.head, axes), _stacked(one.scaler, runs))

@@ -20,6 +20,7 @@ from hemma.rl.environment import Environment, Transitions
 from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.scaling import HOUR
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
@@ -171,5 +172,7 @@ def compare(
 def _stood(environment: Environment, features: Float[Array, "windows features"]) -> tuple[Array, Array]:
     """E [kWh] and T_in [degC] of scaled states."""
     scaler = environment.scaler
-    quantities = scaler.centre + scaler.spread * features[:, :6]  # those two are scaled linearly
+    quantities = (
+        scaler.centre[:HOUR] + scaler.spread[:HOUR] * features[:, :HOUR]
+    )  # those two are scaled linearly
     return quantities[:, ENERGY], quantities[:, INDOOR]

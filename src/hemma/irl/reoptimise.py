@@ -62,7 +62,7 @@ class Inheritance(eqx.Module):
 
 def frozen_task(task: Task[ExplicitReward], reward: FrozenReward, scaler: StateScaler) -> Task:
     """The same home, days and seed, paid by ``reward``, seen through the ``scaler`` that it reads."""
-    environment = eqx.tree_at(lambda e: e.scaler, task.environment, scaler)
+    environment = task.environment.seen_through(scaler)
     return Task(environment, reward, task.seed, task.stream)  # pyright: ignore[reportArgumentType]
 
 

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from hemma.home import Home, HomeState, Step, observe, paper_state
 from hemma.rl.policies.actions import to_power
 from hemma.rl.policies.policy import FEATURES, GaussianPolicy, log_density
-from hemma.rl.policies.scaling import StateScaler
+from hemma.rl.policies.scaling import SELLING, StateScaler
 from hemma.types import Array, Costs, Exogenous
 
 
@@ -50,12 +50,19 @@ class Environment(eqx.Module):
     """How many slots of ``exogenous`` may be replayed; what lies behind them is padding and never read."""
     scaler: StateScaler
     context: Float[Array, "slots figures"]
-    """What is seen in each slot besides the paper's state, scaled; no figures in the paper's method."""
+    """What is seen in each slot besides the paper's state, scaled: the selling price where the state does not
+    tell it, and the figures of a context; nothing in the paper's method."""
 
     @property
     def width(self) -> int:
         """How many features a policy sees."""
         return FEATURES + self.context.shape[-1]
+
+    def seen_through(self, scaler: StateScaler) -> "Environment":
+        """The same through another scaler, which may know a selling price of its own shape or not."""
+        others = self.context[:, self.scaler.centre.shape[-1] - SELLING :]
+        seen = jnp.concatenate([scaler.selling(self.exogenous.selling_price), others], axis=1)
+        return eqx.tree_at(lambda e: (e.scaler, e.context), self, (scaler, seen))
 
     def reset(self, key: Array) -> tuple[HomeState, Array]:
         """A random first slot of the traces, battery level and indoor temperature.

@@ -12,7 +12,7 @@ from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.rl.policies.committee import CommitteePolicy
 from hemma.rl.policies.policy import GaussianPolicy, PolicyController
-from hemma.rl.policies.scaling import HOUR, StateScaler
+from hemma.rl.policies.scaling import StateScaler
 
 Shape = tuple[int, ...]
 
@@ -31,11 +31,11 @@ def load_controllers(path: Path, planning_home: Home) -> PolicyController:
             "models/HOME/METHOD.safetensors in its results folder"
         )
     axes = shapes[f"{place}.bias"][:-1]  # runs, and the members of a committee
-    features = shapes[f"{place}.network.weights[0]"][-1]
+    features, quantities = shapes[f"{place}.network.weights[0]"][-1], shapes[".scaler.centre"][-1]
     policy = _stacked(GaussianPolicy(_hidden(shapes, place), jax.random.key(0), features), axes)
     like = PolicyController(
         policy=CommitteePolicy(policy) if is_committee else policy,
-        scaler=_stacked(StateScaler(jnp.zeros(HOUR), jnp.ones(HOUR)), axes[:1]),
+        scaler=_stacked(StateScaler(jnp.zeros(quantities), jnp.ones(quantities)), axes[:1]),
         planning_home=_stacked(planning_home, axes[:1]),
     )
     return load_tree(path, like)

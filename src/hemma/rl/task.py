@@ -12,9 +12,10 @@ from jaxtyping import Float, Int, UInt
 
 from hemma.errors import HemmaError
 from hemma.home import Home
+from hemma.home.selling import fit_selling
 from hemma.rl.environment import Environment, Transitions
 from hemma.rl.policies.actions import to_fractions
-from hemma.rl.policies.scaling import NOTHING, Context, StateScaler, fit_scaler
+from hemma.rl.policies.scaling import NOTHING, SELLING, Context, StateScaler, fit_scaler
 from hemma.types import Action, Array, Costs, Exogenous, Observation
 
 LEAST_ROOM = 2048
@@ -86,7 +87,8 @@ def make_task(
     """The task of learning from ``demonstrated`` and the traces ``exogenous`` of the same days, nothing else.
 
     ``planning_home`` is ``home`` with an identified thermal model: it turns the learner's fractions into
-    powers, and the expert's powers into fractions. The scaler is fitted to the demonstrated states.
+    powers, and the expert's powers into fractions. The scaler is fitted to the demonstrated states, and to
+    the traces' selling price where that is no line of the buying price: then it is one more feature.
     ``context`` is what there is to see in each slot of ``exogenous`` besides the paper's state.
     """
     if len(demonstrated.actions) != exogenous.slots - 1:
@@ -94,7 +96,8 @@ def make_task(
             f"demonstrations: expected {exogenous.slots - 1} transitions for traces of {exogenous.slots} "
             f"slots, got {len(demonstrated.actions)}; demonstrate and train on the same days"
         )
-    scaler = fit_scaler(np.asarray(demonstrated.states))
+    selling = _untold(exogenous, context)
+    scaler = fit_scaler(np.asarray(demonstrated.states), None if selling is None else selling[:-1])
     actions = Action(*jnp.asarray(demonstrated.actions, float).T)
     states = jnp.asarray(demonstrated.states, float)
     environment = _environment(planning_home, home, exogenous, scaler, context)
@@ -136,7 +139,8 @@ def explicit_task(
         exogenous.buying_price,
         exogenous.hour_of_day,
     )
-    scaler = fit_scaler(np.stack([np.asarray(column, float) for column in columns], axis=1))
+    states = np.stack([np.asarray(column, float) for column in columns], axis=1)
+    scaler = fit_scaler(states, _untold(exogenous, context))
     reward = ExplicitReward(jnp.asarray(comfort_price, float))
     environment = _environment(planning_home, home, exogenous, scaler, context)
     return Task(environment, reward, jnp.asarray(seed), _stream(exogenous))
@@ -167,15 +171,24 @@ def _environment(
     planning_home, home, traces = jax.tree.map(
         lambda x: jnp.asarray(x, float), (planning_home, home, exogenous)
     )
-    seen = scaler.context(jax.tree.map(jnp.asarray, context))
+    seen = jnp.concatenate(
+        [scaler.selling(traces.selling_price), scaler.context(jax.tree.map(jnp.asarray, context))], axis=1
+    )
     return Environment(planning_home, home, traces, jnp.asarray(exogenous.slots), scaler, seen)
 
 
+def _untold(exogenous: Exogenous, context: Context) -> Float[np.ndarray, "slots"] | None:
+    """The selling price where the paper's state does not tell it, or a context has figures of it."""
+    if fit_selling(exogenous) is not None and SELLING not in np.asarray(context.kinds):
+        return None
+    return np.asarray(exogenous.selling_price, float)
+
+
 def _observed(states: Float[Array, "samples 7"]) -> Observation:
-    """What a controller saw in the paper's states; the HVAC power of the slot before is not among them."""
+    """What a controller saw in the paper's states; u- and the HVAC power before are not among them."""
     pv, load, energy, outdoor, indoor, price, hour = states.T
     slots = jnp.arange(len(states))
-    return Observation(pv, load, energy, outdoor, indoor, price, hour, jnp.zeros_like(pv), slots)
+    return Observation(pv, load, energy, outdoor, indoor, price, price, hour, jnp.zeros_like(pv), slots)
 
 
 def _stream(exogenous: Exogenous) -> UInt[Array, ""]:

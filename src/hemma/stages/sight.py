@@ -9,6 +9,7 @@ from jaxtyping import Int
 from hemma.forecasting.observations import PAPER, ObservationModel, Observer
 from hemma.forecasting.outlook import Outlook, yesterday
 from hemma.home import Controller
+from hemma.home.selling import fit_selling
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
 from hemma.rl.policies.policy import InformedController, PolicyController
@@ -78,10 +79,13 @@ def sight_of(model: ObservationModel, expert: Expert, store: Store, forecasts: b
     ``forecasts`` says whether its teacher needs one where it does not.
     """
     case, settings = expert.case, expert.case.experiment.default
+    sells_apart = fit_selling(case.training) is None
     if not (model.forecast or forecasts):
-        return Sight(case, Observer(model, yesterday, settings.published_at), (settings.published_at,))
+        observer = Observer(model, yesterday, settings.published_at, sells_apart)
+        return Sight(case, observer, (settings.published_at,))
     chosen = choose_forecast(expert, store).candidate
-    return Sight(case, Observer(model, chosen.forecaster, settings.published_at), (chosen.name, settings))
+    observer = Observer(model, chosen.forecaster, settings.published_at, sells_apart)
+    return Sight(case, observer, (chosen.name, settings))
 
 
 def informed(controllers: PolicyController, context: Context) -> Controller:

@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Float
 
-from hemma.home import Home, paper_state
+from hemma.home import Home
 from hemma.rl.policies.actions import to_power
 from hemma.rl.policies.network import Network
 from hemma.rl.policies.scaling import Context, StateScaler
@@ -72,7 +72,8 @@ def log_density(
 class PolicyController(eqx.Module):
     """A trained policy as a controller: the mean action, no randomness.
 
-    Called as it is, it sees the paper's state only. A policy that learned with more must be ``informed``.
+    Called as it is, it sees the paper's state, and a selling price that it does not tell. A policy that
+    learned with more must be ``informed``.
     """
 
     policy: Policy
@@ -82,7 +83,7 @@ class PolicyController(eqx.Module):
 
     def __call__(self, observation: Observation, key: Array) -> Action:
         """The action (e, h) [kW]."""
-        return self.act(observation, self.scaler(paper_state(observation)))
+        return self.act(observation, self.scaler.observed(observation))
 
     def act(self, observation: Observation, features: Float[Array, "features"]) -> Action:
         """The action (e, h) [kW] when all that the policy sees is ``features``."""
@@ -100,5 +101,5 @@ class InformedController(eqx.Module):
         """The action (e, h) [kW]."""
         scaler = self.controller.scaler
         seen = scaler.context(self.context.at(observation.slot))
-        features = jnp.concatenate([scaler(paper_state(observation)), seen])
+        features = jnp.concatenate([scaler.observed(observation), seen])
         return self.controller.act(observation, features)

@@ -1,10 +1,14 @@
-"""What selling pays when buying costs this or that, as seen in the training period."""
+"""What selling pays when buying costs this or that, where the one follows from the other."""
 
 import equinox as eqx
 import numpy as np
 
 from hemma.home.precision import in_numpy
 from hemma.types import Array, Exogenous, Scalar
+
+ROUNDING = 0.02
+"""How far from its line a selling price may lie, as a share of the mean buying price: prices are rounded, and
+a battery loses more than that between two hours."""
 
 
 class SellingLine(eqx.Module):
@@ -19,12 +23,17 @@ class SellingLine(eqx.Module):
         return self.slope * buying_price + self.constant
 
 
-def fit_selling(exogenous: Exogenous) -> SellingLine:
-    """The line of least squares, exact where the tariff is one; flat where the buying price never moves."""
+def fit_selling(exogenous: Exogenous) -> SellingLine | None:
+    """The line of least squares; None where the selling price is no line but has a shape of its own.
+
+    Exact where the tariff is a line; flat where the buying price never moves.
+    """
     prices = in_numpy(exogenous)
     u, v = prices.buying_price, prices.selling_price
     difference = u - np.mean(u)
     square = float(np.sum(difference**2))
     moves = np.ptp(u) > 1e-9 * np.max(np.abs(u))
     slope = float(np.sum(difference * v)) / square if moves else 0.0
-    return SellingLine(slope=slope, constant=float(np.mean(v)) - slope * float(np.mean(u)))
+    line = SellingLine(slope=slope, constant=float(np.mean(v)) - slope * float(np.mean(u)))
+    allowed = ROUNDING * np.mean(np.abs(u)) + 1e-9 * np.max(np.abs(v))
+    return line if np.max(np.abs(v - line(u))) <= allowed else None
