@@ -31,7 +31,8 @@ def cost(path) -> float:
 def run(controller):
     with jax.enable_x64(True):
         home, period, controller = in_double((HOME, PERIOD, controller))
-        return replay(home, period, controller, home.reset(), jax.random.key(0))
+        path = replay(home, period, controller, home.reset(), jax.random.key(0))
+        return jax.tree.map(np.asarray, path)
 
 
 def test_perfect_information():

@@ -127,7 +127,9 @@ class Observer:
             rows = yesterday(Outlook(learned, _onwards(circle), slot_length, horizon))
             return self._assembled(circle, weekdays, self._published_in(circle, _first(rows, slots)), None)
         rows = self._crossed(training, circle)
-        return self._assembled(circle, weekdays, self._published_in(circle, rows), _misses(circle, rows))
+        return self._assembled(
+            circle, weekdays, self._published_in(circle, rows), _misses(circle, rows, self.quantities)
+        )
 
     def training_forecast(
         self, training: Exogenous, slots: int, slot_length: float, horizon: float
