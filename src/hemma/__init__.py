@@ -7,10 +7,15 @@ The names below are all that a notebook needs; each is loaded when it is first u
     hemma.run(hemma.Job(hemma.quick(hemma.Experiment()), (home,), pathlib.Path("results")))
 """
 
+import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
+
+os.environ.setdefault("NPROC", "2")
+"""Threads that XLA shares its work among, whatever the cores: it cuts products and sums by their number, and
+rounds them otherwise. It reads this when JAX is first used, so import Hemma before."""
 
 if TYPE_CHECKING:
     from hemma.data import Split, Traces, read_canonical, split

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from probe_worlds import demonstrate, price_rule, ruled_task, traces
 
+from companions import assert_alone_as_among_others
 from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.irl.airl import AdversarialImitation, AIRLSettings, Contest
@@ -18,6 +19,7 @@ from hemma.irl.reward import ImitationScore, ShapedReward
 from hemma.rl import training
 from hemma.rl.environment import Transitions
 from hemma.rl.improvement import Proximal
+from hemma.rl.policies.committee import Committee
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import Expert, make_task, stack
@@ -196,3 +198,14 @@ def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw(head):
     same = jnp.abs(acted.actions[:, 0] - unseen.actions[:, 0]) < 0.75
     assert float(same.mean()) > 0.8
     assert float(jnp.abs(acted.actions[:, 1] - unseen.actions[:, 1]).mean()) < 0.15
+
+
+@pytest.mark.parametrize("head", [ShapedReward, pytest.param(ImitationScore, marks=pytest.mark.slow)])
+def test_a_run_is_the_same_alone_and_among_others(head, monkeypatch):
+    """Of AIRL and of GAIL, to the bit."""
+    assert_alone_as_among_others(task, dataclasses.replace(LEARNER, head=head), monkeypatch)
+
+
+@pytest.mark.slow
+def test_a_committee_is_the_same_alone_and_among_others(monkeypatch):
+    assert_alone_as_among_others(task, Committee(LEARNER, 2), monkeypatch)

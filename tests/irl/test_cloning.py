@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from functools import partial
 
 import equinox as eqx
 import jax
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from probe_worlds import demonstrate, price_rule, ruled_task, traces
 
+from companions import assert_alone_as_among_others
 from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.irl.cloning import BehaviourCloning, CloningSettings, cloning_loss, residual, split_days
@@ -153,3 +155,7 @@ def test_padding_is_never_read():
 def test_settings_without_meaning_are_refused(change, message):
     with pytest.raises(HemmaError, match=message):
         dataclasses.replace(SMALL, **change)
+
+
+def test_a_run_is_the_same_alone_and_among_others(monkeypatch):
+    assert_alone_as_among_others(partial(ruled_task, price_rule), LEARNER, monkeypatch)

@@ -21,6 +21,7 @@ from probe_worlds import (
     transitions,
 )
 
+from companions import assert_alone_as_among_others
 from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.irl.maxent import MaxEntSettings, compare, linear_maxent, neural_maxent
@@ -265,3 +266,7 @@ def test_tomorrow_matters_reward_at_night_is_prepared_in_time(imitators):
     night, noon = (hour >= 22) | (hour < 2), (hour >= 10) & (hour < 14)
     assert energy[night].mean() > energy[noon].mean() + 2.5
     assert energy[hour == 21].mean() > energy[hour == 15].mean() + 1.0
+
+
+def test_a_run_is_the_same_alone_and_among_others(monkeypatch):
+    assert_alone_as_among_others(partial(ruled_task, price_rule), linear_maxent(SMALL, PPO), monkeypatch)

@@ -24,10 +24,15 @@ def two_price_traces(days=6):
     )
 
 
+def paid_task(seed=0, days=6, comfort_price=0.5):
+    """The task of learning from the explicit reward on such days."""
+    return explicit_task(Home(), Home(), two_price_traces(days), comfort_price, seed)
+
+
 def played(learner, comfort_price) -> Step:
     """Every slot of the days that ``learner`` learned from, by its result without exploration."""
     home, traces = Home(), two_price_traces()
-    task = stack([explicit_task(home, home, traces, comfort_price, 0)])
+    task = stack([paid_task(comfort_price=comfort_price)])
     trained = training.train(task, learner)
     controller = jax.tree.map(lambda x: x[0], training.controllers(trained, task, learner))
     exogenous = jax.tree.map(lambda x: jnp.asarray(x, float), traces)

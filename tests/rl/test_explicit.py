@@ -6,8 +6,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from paid_worlds import played, two_price_traces
+from paid_worlds import paid_task, played, two_price_traces
 
+from companions import assert_alone_as_among_others
 from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.rl.environment import collect
@@ -135,3 +136,7 @@ def test_discounting_world_the_battery_is_filled_at_night_for_the_day():
     hour = np.arange(acted.action.battery_power.shape[0]) % 24
     energy = np.asarray(acted.state.battery_energy)
     assert energy[hour == 5].mean() > energy[hour == 17].mean() + 2.0
+
+
+def test_a_run_is_the_same_alone_and_among_others(monkeypatch):
+    assert_alone_as_among_others(paid_task, LEARNER, monkeypatch)

@@ -33,11 +33,12 @@ def _folder() -> Path:
 
 
 def _processor() -> str:
-    """A short name for what the processor can do."""
+    """A short name for what the processor can do, and for the threads that code is compiled for."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         lines = []
     abilities = [line for line in lines if line.startswith(("flags", "Features", "model name"))][:2]
-    text = "\n".join([platform.system(), platform.machine(), platform.processor(), *abilities])
+    threads = os.environ.get("NPROC", "")
+    text = "\n".join([platform.system(), platform.machine(), platform.processor(), threads, *abilities])
     return hashlib.sha256(text.encode()).hexdigest()[:12]

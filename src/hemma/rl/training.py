@@ -20,6 +20,8 @@ from hemma.rl.policies.policy import Policy, PolicyController
 from hemma.rl.task import Task
 from hemma.types import Array
 
+jax.config.update("jax_cpu_enable_async_dispatch", False)  # each call in its own thread, not in XLA's few
+
 Result = TypeVar("Result")
 
 CHUNK = 25
@@ -28,8 +30,8 @@ WIDTH = 2
 """Runs in one call of the compiled code, whatever there is to train and whatever it is trained on.
 
 Compiled code adds up in another order where the batch is wider, and training makes another run of it. With a
-width of its own every run is the same alone and among others, on one core and on many. One run a call takes
-half as long again; more than two take as long as two.
+fixed width every run is the same alone and among others. One run a call takes half as long again for each;
+more than two take as long as two.
 """
 
 

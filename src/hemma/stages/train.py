@@ -146,9 +146,9 @@ class _Clock:
 
 
 def train_lessons(lessons: Sequence[Lesson], store: Store) -> tuple[Trained, ...]:
-    """The controllers of lessons of one kind: those of earlier calls, and the rest trained in one call.
+    """The controllers of lessons of one kind: those of earlier calls, and the rest trained together.
 
-    A wide batch costs less a run, and is compiled once. The learning curves are written beside the
+    Together they fill every call of the compiled code. The learning curves are written beside the
     controllers.
     """
     missing = [lesson for lesson in lessons if store.kept(lesson.label, lesson.mark) is None]
