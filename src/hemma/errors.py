@@ -12,6 +12,15 @@ class HemmaError(ValueError):
     """
 
 
+class ParameterError(HemmaError):
+    """A parameter that makes no sense: kept in parts, so that a settings file can tell it by its own keys."""
+
+    def __init__(self, owner: str, expected: str, came: object):
+        """``expected`` is in the names of the parameters."""
+        super().__init__(f"{owner}: expected {expected}, got {shortened(came)}; correct this setting")
+        self.owner, self.expected, self.came = owner, expected, came
+
+
 def shortened(value: object) -> str:
     """A value as a message shows it: one line of at most ``LONGEST`` characters."""
     text = " ".join(str(value).split())

@@ -21,7 +21,8 @@ def test_holes_up_to_an_hour_are_interpolated_and_told(write):
     np.testing.assert_allclose(read.exogenous.load[50:56], [1.0, 1.2, 1.4, 1.6, 1.8, 2.0])
     assert read.time_stamps() == times
     assert "1 hour interpolated from 2021-06-01T12:45:00-06:00 in load_kw" in read.notes
-    assert "15 minutes interpolated from 2021-06-01T05:00:00-06:00 in every column" in read.notes
+    assert "15 minutes interpolated from 2021-06-01T05:00:00-06:00 in pv_kw, load_kw, outdoor_c" in read.notes
+    assert "15 minutes held from 2021-06-01T05:00:00-06:00 in buy_per_kwh" in read.notes
 
 
 def test_each_longer_hole_is_named(write):

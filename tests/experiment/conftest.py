@@ -7,9 +7,9 @@ from pathlib import Path
 
 import jax
 import pytest
-from tiny_experiment import tiny_job
 
 from hemma.experiment.run import Stage, run
+from tiny_experiment import tiny_job
 
 PATIENCE = 600.0
 """How long a process waits for another one to run the experiment [s]."""

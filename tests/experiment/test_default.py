@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import pytest
-from tiny_experiment import Watching, tiny_job
 
 from hemma.errors import HemmaError
 from hemma.results.store import Store
@@ -11,6 +10,7 @@ from hemma.settings.experiment import DefaultController
 from hemma.stages.case import make_case
 from hemma.stages.default import preferred
 from hemma.stages.folds import training_folds
+from tiny_experiment import Watching, tiny_job
 
 
 @pytest.fixture

@@ -54,8 +54,13 @@ def test_nested_settings_count():
 
 
 def test_what_cannot_be_covered_is_refused():
-    with pytest.raises(TypeError, match="cannot cover a function"):
-        fingerprint("train", lambda: None)
+    with pytest.raises(TypeError, match="cannot cover a set"):
+        fingerprint("train", {1, 2})
+
+
+def test_a_function_counts_by_where_it_is_defined():
+    assert fingerprint("x", fingerprint) == fingerprint("x", fingerprint)
+    assert fingerprint("x", fingerprint) != fingerprint("x", source_digest)
 
 
 def test_arrays_of_jax_count_like_those_of_numpy():

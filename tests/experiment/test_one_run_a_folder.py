@@ -6,7 +6,6 @@ import sys
 from dataclasses import replace
 
 import pytest
-from tiny_experiment import Watching, tiny_experiment, tiny_job
 
 from hemma.errors import HemmaError
 from hemma.experiment.run import Stage, run
@@ -16,6 +15,7 @@ from hemma.stages import job as jobs
 from hemma.stages.job import at_work, checked
 from hemma.studies.robustness.run import run_faults
 from hemma.studies.transfer.run import TransferJob, transfer
+from tiny_experiment import Watching, tiny_experiment, tiny_job
 
 
 def transfer_of(job):
@@ -131,7 +131,7 @@ def test_no_device_is_one_message(tmp_path, start, error, monkeypatch):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("command", STARTS.keys() - {"identify"})
+@pytest.mark.parametrize("command", [name for name in STARTS if name != "identify"])
 @pytest.mark.usefixtures("no_stage")
 def test_too_many_days_of_demonstrations(tmp_path, command):
     job = tiny_job(tmp_path / "out", replace(tiny_experiment(), demonstration_days=10_000))

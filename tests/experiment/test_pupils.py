@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tiny_experiment import Watching, every_method, tiny_job
 
 from hemma.checkpoint import load_header, load_shapes
 from hemma.data import load_austin2021
@@ -13,36 +12,35 @@ from hemma.experiment.run import Stage, run
 from hemma.forecasting.observations import MODELS, Observer
 from hemma.forecasting.outlook import hourly_means
 from hemma.forecasting.shape import ShapeForecast
-from hemma.irl.cloning import BehaviourCloning, CloningSettings
-from hemma.methods.pupils import LEARNED, PUPILS
+from hemma.methods import METHODS, learned, learners
+from hemma.methods.cloning import CLONING
 from hemma.report.methods import grouped, in_order, meaning_of, plain
 from hemma.results.results import load_results
 from hemma.results.store import Store
-from hemma.settings.file import read_settings
 from hemma.stages.case import make_case
 from hemma.stages.causal import causal_demonstration
 from hemma.stages.demonstrate import Expert
 from hemma.stages.identify import identify
-from hemma.stages.lessons import Imitation, lessons
 from hemma.stages.play import play
 from hemma.stages.sight import Sight
 from hemma.stages.train import train_lesson
+from tiny_experiment import Watching, every_method, tiny_job
 
 HOME = "austin2021-2"
 SEEING = ("BC", "BC published", "PPO past")
-SHORT = CloningSettings(iterations=25, hidden=(4,))
 
 
 def test_every_name_says_what_it_is_and_nothing_is_called_twice():
-    assert all(PUPILS[name].is_plain for name in LEARNED)
-    assert [pupil.name for pupil in PUPILS.values()] == list(PUPILS)
-    assert len(PUPILS) == 6 * 6 * 2 + 2 * 6
-    assert not any(pupil.is_causal and pupil.method in ("PPO", "DDPG") for pupil in PUPILS.values())
+    assert len({method.name for method in METHODS}) == len(METHODS)
+    known = learners()
+    assert [method.name for method in known.values()] == list(known)
+    assert len(known) == 6 * 6 * 2 + 2 * 6
+    assert not any(method.is_taught_causally and method.plain in ("PPO", "DDPG") for method in known.values())
 
 
 def test_the_report_knows_all_names():
-    for name, pupil in PUPILS.items():
-        assert plain(name) == pupil.method
+    for name, method in learners().items():
+        assert plain(name) == (method.plain or name)
         assert meaning_of(name)
     present = ["PPO past", "HA-1 published", "Rule", "HA-1 causal", "HA-1"]
     assert in_order(present) == ["HA-1", "HA-1 published", "HA-1 causal", "PPO past", "Rule"]
@@ -52,11 +50,9 @@ def test_the_report_knows_all_names():
 
 
 @pytest.mark.parametrize("name", ["HA-1 future", "PPO causal", "HA-1 causal past", "xyzzy"])
-def test_a_name_that_says_nothing_is_refused(tmp_path, name):
-    file = tmp_path / "home.yaml"
-    file.write_text(f"learned: [HA-1, {name}]\n")
+def test_a_name_that_says_nothing_is_refused(name):
     with pytest.raises(HemmaError, match=rf"learned.*published.*causal.*got {name}"):
-        read_settings(file)
+        learned(replace(every_method(), learned=("HA-1", name)))
 
 
 @pytest.fixture(scope="module")
@@ -74,8 +70,7 @@ def expert(case, tmp_path):
 
 def test_a_pupil_that_sees_more_is_taught_and_acts_by_what_it_sees(case, expert):
     one, store = expert
-    wanted = [Imitation(name, BehaviourCloning(SHORT), 2, 1, name, PUPILS[name]) for name in SEEING[:2]]
-    made = lessons(case, one, store, wanted)
+    made = [method.training_job(one, store) for method in (CLONING, CLONING.seeing(MODELS["published"]))]
     assert [lesson.task.environment.width for lesson in made] == [8, 20]
     assert made[0].kind != made[1].kind
     played = [play(case, lesson, train_lesson(lesson, store))[0].outcome for lesson in made]

@@ -70,3 +70,13 @@ def test_what_leaving_the_band_saved_is_taken_back():
     warm, held = outcome(1.0, 4 / 6), outcome(2.0, 0.0)
     np.testing.assert_allclose(daily_costs([warm], optimum, 3), [3 + 2, 3 + 2])
     np.testing.assert_allclose(daily_costs([warm, held], optimum, 3), [5.5, 5.5])
+
+
+def test_of_the_same_cost_the_one_that_keeps_comfort_is_recommended():
+    """Where nothing has a price a thermostat that lets the home drift is not as good as one that holds it."""
+    free = costs(Rule=[0, 0, 0], thresholds=[0, 0, 0], default=[0, 0, 0])
+    drifting = {"Rule": 0.45, "thresholds": 0.0, "default": 0.0}
+    assert recommend(free, drifting).method == "thresholds"
+    assert recommend(free, COMFORTABLE).method == "Rule"
+    dear = costs(Rule=[2, 2, 2], thresholds=[2, 2, 2], default=[1, 1, 1])
+    assert recommend(dear, drifting).method == "default"

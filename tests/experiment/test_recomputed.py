@@ -2,19 +2,19 @@
 
 import json
 import shutil
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import jax
 import numpy as np
 import pytest
 from recomputation import EXOGENOUS, SCHEDULE, complaints, groups
-from tiny_experiment import tiny_experiment
 
 from hemma.evaluation import EqualComfort, evaluate, measure
 from hemma.home import Battery, ExplicitThermalModel, Hvac, Schedule
 from hemma.results.schedules import EXOGENOUS_COLUMNS, SCHEDULE_COLUMNS, write_exogenous, write_schedule
 from hemma.settings.keys import outside
 from hemma.types import Action, Exogenous
+from tiny_experiment import tiny_experiment
 
 RULE = "schedules/austin2021-2/Rule.csv"
 
@@ -81,7 +81,7 @@ def test_a_home_that_is_not_the_papers_recomputes_too(tmp_path):
     )
     wild = Schedule(Action(random.uniform(-6, 6, 200), random.uniform(-1, 5, 200)))
     outcome = evaluate(experiment.home(0.25), exogenous, wild, jax.random.key(0))
-    metrics = asdict(measure(outcome, EqualComfort(optimum=1.0, no_battery=2.0)))
+    metrics = measure(outcome, EqualComfort(optimum=1.0, no_battery=2.0)).model_dump()
     folder = tmp_path / "schedules" / "odd"
     folder.mkdir(parents=True)
     stamps = [str(slot) for slot in range(200)]

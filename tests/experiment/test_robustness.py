@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tiny_experiment import Watching, tiny_experiment, tiny_job
 
-from hemma.studies.robustness.faults import FaultSettings, faults
+from hemma.results.reading import json_content
+from hemma.settings.faults import FaultSettings
+from hemma.studies.robustness.faults import faults
 from hemma.studies.robustness.records import load_robustness
 from hemma.studies.robustness.report import met, robustness_markdown, robustness_rows, shown
 from hemma.studies.robustness.run import run_faults
+from tiny_experiment import Watching, tiny_experiment, tiny_job
 
 HOME = "austin2021-2"
 FEW = ("nothing", "disturbed building", "worn battery", "no thermometer", "no battery level")

@@ -7,12 +7,12 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from tiny_experiment import Watching, tiny_experiment, tiny_job
 
 from hemma.errors import HemmaError
 from hemma.experiment.run import Stage, run
 from hemma.home import Battery
 from hemma.results.results import RESULTS_FILE, load_results
+from tiny_experiment import Watching, tiny_experiment, tiny_job
 
 HOME = "austin2021-2"
 METRICS = {

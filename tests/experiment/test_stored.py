@@ -5,7 +5,6 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from tiny_experiment import Watching, tiny_job
 
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
@@ -18,6 +17,7 @@ from hemma.studies.robustness.run import measure_faults, run_stored_faults
 from hemma.studies.robustness.scenes import scene
 from hemma.studies.robustness.stored import stored_job, stored_trial
 from hemma.studies.robustness.trial import FOREIGN, Trial
+from tiny_experiment import Watching, tiny_job
 
 HOME = "austin2021-2"
 COMMAND = "hemma robustness --for-tests"
@@ -107,7 +107,8 @@ def test_controllers_of_another_home_act_in_this_one(trial):
     case, guest = trial.expert.case, moved(trial, 3)
     own, foreign = trial.results(guest)
     assert (own.fault, foreign.fault) == ("nothing", FOREIGN.name)
-    assert foreign.runs == guest.runs(scene(case.home, case.test))
+    acted = guest.runs(scene(case.home, case.test))
+    assert {name: list(one.runs) for name, one in foreign.methods.items()} == acted
     costs = [{name: one.mean.energy_cost for name, one in met.methods.items()} for met in (own, foreign)]
     assert costs[0]["Rule"] == costs[1]["Rule"]
     assert costs[0]["MPC hourly means"] != costs[1]["MPC hourly means"]
@@ -137,10 +138,7 @@ def test_planners_that_look_less_far_are_measured_again(trial):
     case = trial.expert.case
     shorter = replace(case, experiment=replace(case.experiment, forecast_horizon=3.0))
     again = replace(trial, expert=replace(trial.expert, case=shorter))
-    costs = [
-        [run.energy_cost for run in one.results()[0].runs if run.method == "MPC yesterday"]
-        for one in (trial, again)
-    ]
+    costs = [one.results()[0].methods["MPC yesterday"].mean.energy_cost for one in (trial, again)]
     assert costs[0] != costs[1]
 
 

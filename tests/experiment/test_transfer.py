@@ -6,7 +6,6 @@ from dataclasses import replace
 import jax
 import numpy as np
 import pytest
-from tiny_experiment import Watching, tiny_experiment
 
 from hemma.checkpoint import load_header
 from hemma.data import load_austin2021
@@ -16,6 +15,7 @@ from hemma.irl.reward import ShapedReward
 from hemma.settings.experiment import Experiment
 from hemma.studies.transfer.changes import CHANGES, places
 from hemma.studies.transfer.run import GAIL, POLICY, TransferJob, transfer
+from tiny_experiment import Watching, tiny_experiment
 
 BY_NAME = {change.name: change for change in CHANGES}
 FEW = tuple(BY_NAME[name] for name in ("unchanged", "twice the battery"))

@@ -4,10 +4,11 @@ import gzip
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 
 from hemma.checkpoint import write_atomically
 from hemma.data.clock import regular_clock
-from hemma.data.csv_table import parse_table
+from hemma.data.csv_table import CsvTable, parse_table
 from hemma.data.source_file import read_source, stem
 from hemma.data.traces import Traces
 from hemma.data.validation import Columns, Log, Repairs, validated
@@ -23,13 +24,14 @@ def read_canonical(
     """Read a canonical trace file, ``.csv`` or ``.csv.gz``.
 
     ``selling_ratio`` stands in for a missing ``sell_per_kwh``. Holes of at most ``longest_gap`` [h] are
-    interpolated; that and every other repair stands in the ``notes`` of the traces. Any slot length; two
-    offsets (daylight saving) are accepted. Errors: HemmaError with file, line, column, time and cure.
+    interpolated (prices hold the value before); that and every other repair stands in the ``notes`` of the
+    traces. Any slot length that divides a day; two offsets (daylight saving) are accepted. Errors: HemmaError
+    with file, line, column, time and cure.
     """
     file = read_source(Path(path))
     table = parse_table(file, REQUIRED, OPTIONAL)
     placement = regular_clock(table.stamps("time"), str(path))
-    columns = {column: placement.placed(table.numbers(column)) for column in table.header if column != "time"}
+    columns = {column: placement.placed(_known(table, column)) for column in table.header if column != "time"}
     log = Log(
         name=name or stem(file.path),
         file=str(path),
@@ -39,6 +41,18 @@ def read_canonical(
         source=f"Traces of the file {file.path.name}, as its owner recorded them.",
     )
     return validated(log, Repairs(longest_gap=longest_gap, selling_ratio=selling_ratio))
+
+
+def _known(table: CsvTable, column: str) -> Float[np.ndarray, "rows"]:
+    """A column of numbers, at least one."""
+    values = table.numbers(column)
+    if not np.isfinite(values).any():
+        cure = "take the column out" if column in OPTIONAL else "fill it (a home without PV has 0 in pv_kw)"
+        raise HemmaError(
+            f"{table.path}, line {table.lines[0]}: expected numbers in {column}, got none in any of the "
+            f"{len(values)} rows: {column} is empty: {cure}"
+        )
+    return values
 
 
 def write_canonical(traces: Traces, path: str | Path) -> None:

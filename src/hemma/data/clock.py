@@ -15,6 +15,15 @@ if TYPE_CHECKING:
 
 MOST_SLOTS_PER_ROW = 10
 """A file whose span has more slots than this per row has a wrong time stamp rather than holes."""
+OTHER_LENGTH = 6
+"""So many rows in succession at one other distance are slots of another length rather than holes."""
+EARLIEST_OFFSET, LATEST_OFFSET = -12.0, 14.0
+"""Wall clocks of the world minus UTC [h]."""
+LARGEST_CHANGE = 2.0
+"""No daylight saving moves the wall clock by more than this [h]."""
+SHORTEST_SEASON = 14 * 86400
+"""Nobody changes the wall clock again before this [s]; the month of Ramadan is the shortest season."""
+DAY = 86400
 
 
 @dataclass(frozen=True)
@@ -62,7 +71,7 @@ class Clock:
     def hour_of_day(self) -> Float[np.ndarray, "slots"]:
         """Local wall clock hour at the start of each slot, in [0, 24)."""
         wall = self.seconds + np.round(self.offset * 3600).astype(np.int64)
-        return (wall % 86400) / 3600
+        return (wall % DAY) / 3600
 
     def text(self, slot: int) -> str:
         """Start of a slot, ISO 8601 with the offset; the slot after the last is the end."""
@@ -105,12 +114,15 @@ class Placement:
 def regular_clock(stamps: Stamps, name: str) -> Placement:
     """The regular clock on which the rows of the file ``name`` stand, in order, each slot at most once."""
     if len(stamps.seconds) < 2:
-        raise HemmaError(f"{name}: expected at least two rows, got {len(stamps.seconds)}")
+        raise HemmaError(
+            f"{name}: expected at least two rows, got {len(stamps.seconds)}. Give a file with some days"
+        )
     steps = np.diff(stamps.seconds)
     _check_order(stamps, steps, name)
+    _check_offsets(stamps, name)
     lengths, counts = np.unique(steps, return_counts=True)
     step = int(lengths[np.argmax(counts)])
-    _check_regularity(stamps, steps % step != 0, step, name)
+    _check_one_length(stamps, steps, step, name)
     slot = (stamps.seconds - stamps.seconds[0]) // step
     slots = int(slot[-1]) + 1
     if slots > MOST_SLOTS_PER_ROW * (len(slot) + 10):
@@ -119,13 +131,17 @@ def regular_clock(stamps: Stamps, name: str) -> Placement:
             f"{stamps.text(0)} and {stamps.text(-1)}. Correct the time stamps"
         )
     latest_row = np.maximum.accumulate(np.bincount(slot, np.arange(len(slot)), slots).astype(int))
-    offset = stamps.offset[latest_row]
-    if len(set(offset.tolist())) > 2:
+    return Placement(Clock(int(stamps.seconds[0]), step, stamps.offset[latest_row]), slot)
+
+
+def require_whole_days(clock: Clock, name: str) -> None:
+    """Refuse slots that do not divide a day: forecasts and schedules go by the time of the day."""
+    if DAY % clock.step:
         raise HemmaError(
-            f"{name}: expected at most two offsets from UTC, standard and daylight saving time, got "
-            f"{', '.join(f'{x:+g} h' for x in sorted(set(offset.tolist())))}. Correct the time stamps"
+            f"{name}: expected slots that divide a day, such as 15, 30 or 60 minutes, got slots of "
+            f"{clock.step / 60:.4g} minutes ({clock.text(0)}, {clock.text(1)}). Bring the rows to such a "
+            "length: means for powers and temperatures, the price that holds"
         )
-    return Placement(Clock(int(stamps.seconds[0]), step, offset), slot)
 
 
 def _check_order(stamps: Stamps, steps: Int[np.ndarray, "steps"], name: str) -> None:
@@ -140,15 +156,54 @@ def _check_order(stamps: Stamps, steps: Int[np.ndarray, "steps"], name: str) -> 
     )
 
 
-def _check_regularity(stamps: Stamps, irregular: np.ndarray, step: int, name: str) -> None:
-    if not irregular.any():
+def _check_offsets(stamps: Stamps, name: str) -> None:
+    """Offsets that exist, and no more changes of them than daylight saving makes."""
+    offset = stamps.offset
+    strange = (offset < EARLIEST_OFFSET) | (offset > LATEST_OFFSET) | (offset % 0.25 != 0)
+    changes = np.flatnonzero(np.diff(offset)) + 1
+    again = np.flatnonzero(np.diff(stamps.seconds[changes]) < SHORTEST_SEASON)
+    large = np.flatnonzero(np.abs(np.diff(offset)[changes - 1]) > LARGEST_CHANGE)
+    if strange.any():
+        row = int(np.argmax(strange))
+        expected = "an offset from UTC that exists, quarters of an hour between -12:00 and +14:00"
+    elif len(set(offset.tolist())) > 2:
+        seen = set(offset[: changes[1]].tolist())
+        row = next(int(change) for change in changes if offset[change] not in seen)
+        expected = "at most two offsets from UTC, standard and daylight saving time"
+    elif len(large):
+        row = int(changes[large[0]])
+        expected = f"an offset from UTC that daylight saving changes by at most {LARGEST_CHANGE:g} hours"
+    elif len(again):
+        row = int(changes[again[0] + 1])
+        expected = "offsets from UTC that change in spring and autumn, not back and forth"
+    else:
         return
-    row = int(np.argmax(irregular)) + 1
+    before = f" after {stamps.text(row - 1)}" if row else ""
     raise HemmaError(
-        f"{name}, {stamps.places[row]}: expected slots of one length, mostly {step / 60:g} minutes, but "
-        f"{stamps.text(row)} follows {stamps.text(row - 1)} ({int(irregular.sum())} such rows). "
-        "Bring the rows to a regular clock"
+        f"{name}, {stamps.places[row]}: expected {expected}, got {stamps.text(row)}{before}. "
+        "Write each row with the offset of the home's wall clock at that moment"
     )
+
+
+def _check_one_length(stamps: Stamps, steps: Int[np.ndarray, "steps"], step: int, name: str) -> None:
+    """Rows off the clock, and stretches of rows on every second or fourth of its slots, are refused."""
+    ends = np.concatenate([[0], np.flatnonzero(np.diff(steps)) + 1, [len(steps)]])
+    other = (np.diff(ends) >= OTHER_LENGTH) & (steps[ends[:-1]] != step)
+    if other.any():
+        first = int(ends[np.argmax(other)])
+        raise HemmaError(
+            f"{name}, {stamps.places[first + 1]}: expected slots of one length, mostly {step / 60:g} "
+            f"minutes, but from {stamps.text(first)} on they have {steps[first] / 60:g} minutes. Bring all "
+            "rows to one length, or cut the file there"
+        )
+    irregular = steps % step != 0
+    if irregular.any():
+        row = int(np.argmax(irregular)) + 1
+        raise HemmaError(
+            f"{name}, {stamps.places[row]}: expected slots of one length, mostly {step / 60:g} minutes, but "
+            f"{stamps.text(row)} follows {stamps.text(row - 1)} ({int(irregular.sum())} such rows). "
+            "Bring the rows to a regular clock"
+        )
 
 
 def iso_text(seconds: int, offset: float) -> str:

@@ -1,14 +1,21 @@
-"""Holes in logged series: short ones are interpolated and reported, long ones refused one by one."""
+"""Holes in logged series: short ones are filled and reported, long ones refused one by one.
+
+What flows (power, temperature) is interpolated; what holds (a price) keeps the value before.
+"""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from hemma.data.clock import Clock
 from hemma.errors import HemmaError
 
+HOLDS = "_per_kwh"
+"""Columns whose name ends so hold their value until the next: prices."""
+LONGEST_HOLD = 24.0
+"""Values that come less often than this [h] are no price list."""
 MOST_NAMED = 10
 """So many holes are named one by one; more are summed up."""
 
@@ -42,10 +49,13 @@ def fill_gaps(
     columns: Sequence[Float[np.ndarray, "slots"]],
     longest: float,
 ) -> Filled:
-    """Interpolate linearly over holes (NaN) of at most ``longest`` [h] that have values on both sides.
+    """Fill holes (NaN) of at most ``longest`` [h] that have values on both sides.
 
-    Others raise a HemmaError that names each of them and the longest stretch without one.
+    Prices hold the value before them, everything else is interpolated linearly. Prices that come regularly
+    once in several slots hold until the next, whatever ``longest``. Other holes raise a HemmaError that names
+    each of them and the longest stretch without one.
     """
+    columns, notes = _spread(clock, names, columns)
     holes = _holes(names, columns)
     refused = [
         hole
@@ -56,9 +66,46 @@ def fill_gaps(
     ]
     if refused:
         raise HemmaError(_refusal(name, clock, refused, len(names), longest))
-    slots = np.arange(clock.slots)
-    filled = [np.interp(slots, slots[np.isfinite(c)], c[np.isfinite(c)]) for c in columns]
-    return Filled(filled, _notes(clock, holes, len(names)))
+    filled = [_without_holes(name, column) for name, column in zip(names, columns, strict=True)]
+    return Filled(filled, (*notes, *_notes(clock, holes, names)))
+
+
+def _spread(
+    clock: Clock, names: Sequence[str], columns: Sequence[Float[np.ndarray, "slots"]]
+) -> tuple[list[Float[np.ndarray, "slots"]], list[str]]:
+    """Prices that come once in several slots, held over the slots that they are given for."""
+    spread, notes = [], []
+    for name, column in zip(names, columns, strict=True):
+        period = _period(column) if name.endswith(HOLDS) else 1
+        if 1 < period <= LONGEST_HOLD / clock.slot_length:
+            latest = _latest(column)
+            held = np.isnan(column) & (np.arange(clock.slots) - latest < period)
+            column = np.where(held, column[latest], column)
+            every = duration(period * clock.slot_length)
+            notes.append(f"{name} comes once in {every}: each value is held until the next")
+        spread.append(column)
+    return spread, notes
+
+
+def _period(column: Float[np.ndarray, "slots"]) -> int:
+    """Number of slots between most of the values that follow each other."""
+    distances = np.diff(np.flatnonzero(np.isfinite(column)))
+    if len(distances) < 2:
+        return 1
+    lengths, counts = np.unique(distances, return_counts=True)
+    return int(lengths[np.argmax(counts)]) if 2 * counts.max() > len(distances) else 1
+
+
+def _latest(column: Float[np.ndarray, "slots"]) -> Int[np.ndarray, "slots"]:
+    """The slot of the latest value in each slot, the first slot before there is one."""
+    return np.maximum.accumulate(np.where(np.isfinite(column), np.arange(len(column)), 0))
+
+
+def _without_holes(name: str, column: Float[np.ndarray, "slots"]) -> Float[np.ndarray, "slots"]:
+    if name.endswith(HOLDS):
+        return column[_latest(column)]
+    slots, known = np.arange(len(column)), np.isfinite(column)
+    return np.interp(slots, slots[known], column[known])
 
 
 def runs(mask: Bool[np.ndarray, "slots"]) -> list[tuple[int, int]]:
@@ -109,18 +156,32 @@ def _longest_stretch(clock: Clock, holes: list[Hole]) -> str:
     return f"The longest stretch without one has {days:.1f} days, {clock.text(start)} to {clock.text(stop)}. "
 
 
-def _notes(clock: Clock, holes: list[Hole], columns: int) -> tuple[str, ...]:
-    if len(holes) > MOST_NAMED:
-        total = duration(sum(hole.stop - hole.start for hole in holes) * clock.slot_length)
-        touched = sorted({column for hole in holes for column in hole.columns})
-        return (
-            f"{len(holes)} holes interpolated, {total} in all, the first at {clock.text(holes[0].start)}, "
-            f"in {', '.join(touched)}",
+def _notes(clock: Clock, holes: list[Hole], names: Sequence[str]) -> tuple[str, ...]:
+    notes = []
+    for filled, kind in (
+        ("interpolated", [name for name in names if not name.endswith(HOLDS)]),
+        ("held", [name for name in names if name.endswith(HOLDS)]),
+    ):
+        parts = [replace(hole, columns=tuple(c for c in hole.columns if c in kind)) for hole in holes]
+        parts = [hole for hole in parts if hole.columns]
+        notes += (
+            _summed(clock, parts, filled)
+            if len(parts) > MOST_NAMED
+            else [
+                f"{hole.duration(clock)} {filled} from {clock.text(hole.start)} in {_where(hole, len(names))}"
+                for hole in parts
+            ]
         )
-    return tuple(
-        f"{hole.duration(clock)} interpolated from {clock.text(hole.start)} in {_where(hole, columns)}"
-        for hole in holes
-    )
+    return tuple(notes)
+
+
+def _summed(clock: Clock, holes: list[Hole], filled: str) -> list[str]:
+    total = duration(sum(hole.stop - hole.start for hole in holes) * clock.slot_length)
+    touched = sorted({column for hole in holes for column in hole.columns})
+    return [
+        f"{len(holes)} holes {filled}, {total} in all, the first at {clock.text(holes[0].start)}, "
+        f"in {', '.join(touched)}"
+    ]
 
 
 def counted(number: int, what: str) -> str:

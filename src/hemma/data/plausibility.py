@@ -1,75 +1,85 @@
 """Does a column look like its unit? Wrong units are refused with the conversion, odd values are reported."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
+from hemma.data.clock import Clock
 from hemma.data.gaps import duration
+from hemma.data.outliers import absurd_cells, believable, stuck_cells, unusual_cells
 from hemma.data.traces import Traces
+from hemma.errors import HemmaError
 
-LARGEST_HOME = 200.0
-"""No home generates or uses more than this [kW]."""
 LARGEST_MEDIAN_POWER = 40.0
-"""A column of power [kW] whose median over its positive slots is above this is in W."""
-WARMEST = 60.0
-"""No weather station has measured more than this [degC]."""
-COLDEST = -90.0
-WARMEST_MEDIAN_OUTDOORS = 45.0
-WARMEST_MEDIAN_INDOORS = 45.0
-"""Medians [degC] above these are degF; above ``COLDEST_KELVIN`` they are K."""
-COLDEST_KELVIN = 180.0
+"""A column of power [kW] whose median magnitude, zeros left out, is above this is in W."""
+WARMEST_MEDIAN = 45.0
+"""Medians [degC] above this are another unit: K if all values lie between the two below, else degF."""
+KELVIN = (200.0, 335.0)
+FAHRENHEIT = (60.0, 140.0)
 FAHRENHEIT_SHARE = 0.01
-"""More values than this above ``WARMEST`` are no failed sensor but another unit."""
+"""More values than this in the range of a summer in degF are no failed sensor but another unit."""
 LARGEST_MEDIAN_PRICE = 3.0
 """Prices whose median magnitude is above this [currency/kWh] are in cents, or in currency/MWh."""
+SMALLEST_POWER = 0.05
+"""A column of power that never exceeds this [kW] is perhaps in MW, or was divided twice."""
 NIGHT_SHARE = 0.01
 """Share of the PV energy between 22:00 and 04:00 that hints at a wrong clock."""
 NOON_RANGE = (9.5, 16.5)
 """Wall clock hours between which the centre of the PV generation lies, wherever the home is."""
 
+Series = Float[np.ndarray, "slots"]
 
-def unit_problems(names: Sequence[str], columns: Sequence[Float[np.ndarray, "slots"]]) -> list[str]:
-    """One sentence for each column that cannot be in the unit of its name; NaN are left out."""
+
+def require_plausible(file: str, clock: Clock, names: Sequence[str], columns: Sequence[Series]) -> None:
+    """Refuse columns in another unit than that of their name, and cells that nothing measured; NaN pass."""
     problems = []
     for name, column in zip(names, columns, strict=True):
         known = column[np.isfinite(column)]
         problem = _unit_problem(name, known) if len(known) else None
+        problem = problem or absurd_cells(name, clock, column)
         if problem is not None:
             problems.append(problem)
-    return problems
+    if problems:
+        raise HemmaError(f"{file}: {'; '.join(problems)}")
 
 
 def _unit_problem(name: str, values: Float[np.ndarray, "known"]) -> str | None:
+    """What a whole column says about its unit; single cells that nothing measured do not count."""
+    typical = believable(values)
+    if not len(typical):
+        return None
     if name.endswith("_kw"):
-        return _power_problem(name, values)
+        return _power_problem(name, typical)
     if name.endswith("_c"):
-        return _temperature_problem(name, values)
-    return _price_problem(name, values)
+        return _temperature_problem(name, typical)
+    return _price_problem(name, typical)
 
 
 def _power_problem(name: str, values: Float[np.ndarray, "known"]) -> str | None:
-    positive = values[values > 0]
-    median = float(np.median(positive)) if len(positive) else 0.0
-    if values.max() <= LARGEST_HOME and median <= LARGEST_MEDIAN_POWER:
+    sizes = np.abs(values[values != 0])
+    median = float(np.median(sizes)) if len(sizes) else 0.0
+    if median <= LARGEST_MEDIAN_POWER:
         return None
     return (
-        f"{name} reaches {values.max():.4g} kW and its median is {median:.4g} kW, more than a home has: "
+        f"{name} reaches {sizes.max():.4g} kW and its median is {median:.4g} kW, more than a home has: "
         "expected kW, this looks like W. Divide by 1000"
     )
 
 
 def _temperature_problem(name: str, values: Float[np.ndarray, "known"]) -> str | None:
-    median, low, high = float(np.median(values)), values.min(), values.max()
-    limit = WARMEST_MEDIAN_INDOORS if name == "indoor_c" else WARMEST_MEDIAN_OUTDOORS
-    found = f"{name} runs from {low:.4g} to {high:.4g} degC (median {median:.4g})"
-    if median > COLDEST_KELVIN:
+    median = float(np.median(values))
+    found = f"{name} runs from {values.min():.4g} to {values.max():.4g} degC (median {median:.4g})"
+    summer = np.mean((values > FAHRENHEIT[0]) & (values < FAHRENHEIT[1]))
+    if KELVIN[0] < values.min() and values.max() < KELVIN[1]:
         return f"{found}: expected degrees Celsius, this looks like kelvin. Subtract 273.15"
-    if median > limit or np.mean(values > WARMEST) > FAHRENHEIT_SHARE:
+    if WARMEST_MEDIAN < median < FAHRENHEIT[1] or (summer > FAHRENHEIT_SHARE and median < FAHRENHEIT[1]):
         return f"{found}: expected degrees Celsius, this looks like Fahrenheit. Convert: (F - 32) / 1.8"
-    if high > WARMEST or low < COLDEST:
-        return f"{found}: expected temperatures that occur. Empty the cells of the failed sensor"
+    if median > WARMEST_MEDIAN:
+        return (
+            f"{found}: expected degrees Celsius, this is no unit known here. Convert it (divide tenths by 10)"
+        )
     return None
 
 
@@ -107,10 +117,15 @@ def solar_clock(traces: Traces) -> SolarClock | None:
     )
 
 
-def oddities(traces: Traces) -> tuple[str, ...]:
-    """What is allowed but worth knowing, one sentence each."""
+def oddities(traces: Traces, clock: Clock, columns: Mapping[str, Series]) -> tuple[str, ...]:
+    """What is allowed but worth knowing, one sentence each; ``columns`` are those of the file, filled."""
     e = traces.exogenous
     notes = []
+    for name, column in columns.items():
+        notes += unusual_cells(name, clock, column)
+        notes += stuck_cells(name, clock, column)
+        if name.endswith("_kw") and 0 < column.max() < SMALLEST_POWER:
+            notes.append(f"{name} is at most {column.max():.3g} kW: is it in kW?")
     sun = solar_clock(traces)
     if sun is None:
         notes.append("pv_kw is zero throughout: a home without PV")
@@ -127,6 +142,4 @@ def oddities(traces: Traces) -> tuple[str, ...]:
     ):
         if mask.any():
             notes.append(f"{what} in {duration(int(mask.sum()) * traces.slot_length)}")
-    if (e.load == e.load[0]).all():
-        notes.append(f"load_kw is {e.load[0]:.4g} kW throughout")
     return tuple(notes)

@@ -10,6 +10,7 @@ from hemma.errors import HemmaError
 
 GZIP = b"\x1f\x8b"
 ZIP = b"PK\x03\x04"
+NEWLINE = b"\n"
 
 
 @dataclass(frozen=True)
@@ -31,12 +32,27 @@ def read_source(path: Path) -> SourceFile:
     if content.startswith(ZIP):
         raise HemmaError(f"{path}: expected a CSV text file, got an Excel or zip file. Export it as CSV")
     try:
-        return SourceFile(path, digest, content.decode("utf-8-sig"))
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise HemmaError(
-            f"{path}: expected text in UTF-8, got byte {content[error.start]:#04x} at position "
-            f"{error.start}. Save it as CSV UTF-8"
+            f"{_place(path, content, error.start)}: expected text in UTF-8, got byte "
+            f"{content[error.start]:#04x} at position {error.start}. Save it as CSV UTF-8"
         ) from error
+    if "\0" in text:
+        raise HemmaError(
+            f"{_place(path, content, content.index(0))}: expected text in UTF-8, got a byte 0x00: UTF-16, "
+            "or a file that was not written to its end. Save it as CSV UTF-8"
+        )
+    return SourceFile(path, digest, text)
+
+
+def cut(text: str, longest: int = 60) -> str:
+    """What came, for a message: at most ``longest`` characters of it."""
+    return text if len(text) <= longest else f"{text[:longest]}... ({len(text)} characters)"
+
+
+def _place(path: Path, content: bytes, position: int) -> str:
+    return f"{path}, line {content.count(NEWLINE, 0, position) + 1}"
 
 
 def read_bytes(path: Path) -> bytes:

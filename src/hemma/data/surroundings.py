@@ -1,7 +1,7 @@
 """Weather and prices from files of their own, brought onto the clock of a home."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +10,7 @@ from jaxtyping import Float
 from hemma.data.clock import Clock, regular_clock
 from hemma.data.csv_table import CsvTable, parse_table, read_header
 from hemma.data.gaps import fill_gaps
+from hemma.data.plausibility import require_plausible
 from hemma.data.source_file import read_source
 from hemma.errors import HemmaError
 
@@ -46,10 +47,11 @@ def outdoor_temperature(path: Path, clock: Clock, latitude: float | None = None)
     if "localhour" in read_header(file):
         table = _nearest_place(parse_table(file, ("localhour", "temperature"), read_header(file)), latitude)
         native = _native(table, "localhour", "temperature", clock)
-        celsius = Native(native.clock, (native.values - 32) / 1.8, native.notes)
-        return Surrounding(_interpolated(celsius, clock), native.notes)
-    table = parse_table(file, ("time", "outdoor_c"), read_header(file))
-    native = _native(table, "time", "outdoor_c", clock)
+        native = replace(native, values=(native.values - 32) / 1.8)
+    else:
+        table = parse_table(file, ("time", "outdoor_c"), read_header(file))
+        native = _native(table, "time", "outdoor_c", clock)
+    require_plausible(str(path), native.clock, ["outdoor_c"], [native.values])
     return Surrounding(_interpolated(native, clock), native.notes)
 
 
@@ -64,6 +66,7 @@ def price(path: Path, column: str, clock: Clock) -> Surrounding | None:
     if column not in header and column == "sell_per_kwh":
         return None
     native = _native(parse_table(file, ("time", column), header), "time", column, clock)
+    require_plausible(str(path), native.clock, [column], [native.values])
     return Surrounding(_averaged(native, clock), native.notes)
 
 

@@ -35,10 +35,14 @@ class TimeOfUse:
         """Refuse prices that are no numbers and hours that no day has."""
         require_ratio("time of use: selling_ratio", self.selling_ratio)
         if not (math.isfinite(self.off_peak_per_kwh) and math.isfinite(self.peak_per_kwh)):
-            raise HemmaError("time of use: expected two prices in currency/kWh, got one that is no number")
+            raise HemmaError(
+                f"time of use: expected two prices in currency/kWh, got {self.off_peak_per_kwh} "
+                f"and {self.peak_per_kwh}. Correct them"
+            )
         if not (0 <= self.peak_from <= 24 and 0 <= self.peak_until <= 24):
             raise HemmaError(
-                f"time of use: expected hours between 0 and 24, got {self.peak_from} to {self.peak_until}"
+                f"time of use: expected hours between 0 and 24, got {self.peak_from} to {self.peak_until}. "
+                "Correct them"
             )
 
     def buying_price(self, clock: Clock) -> Float[np.ndarray, "slots"]:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from jaxtyping import Float
 
-from hemma.data.clock import Clock
+from hemma.data.clock import Clock, require_whole_days
 from hemma.data.gaps import duration, fill_gaps, runs
-from hemma.data.plausibility import oddities, unit_problems
+from hemma.data.plausibility import oddities, require_plausible
 from hemma.data.tariff import require_ratio
 from hemma.data.traces import Traces
 from hemma.errors import HemmaError
@@ -74,7 +74,7 @@ class Repairs:
         if not (self.longest_gap >= 0 and self.noise >= 0):
             raise HemmaError(
                 f"repairs: expected longest_gap and noise of at least 0, got {self.longest_gap} h and "
-                f"{self.noise} kW"
+                f"{self.noise} kW. Correct them"
             )
         require_ratio("selling_ratio", self.selling_ratio)
 
@@ -85,9 +85,8 @@ DEFAULT_REPAIRS = Repairs()
 def validated(log: Log, repairs: Repairs = DEFAULT_REPAIRS) -> Traces:
     """The traces of a log; HemmaError if units, signs or holes make it useless."""
     names = log.columns.names()
-    problems = unit_problems(names, log.columns.series())
-    if problems:
-        raise HemmaError(f"{log.file}: {'; '.join(problems)}")
+    require_whole_days(log.clock, log.file)
+    require_plausible(log.file, log.clock, names, log.columns.series())
     columns, clipped = _without_noise(log, repairs)
     filled = fill_gaps(log.file, log.clock, names, columns.series(), repairs.longest_gap)
     columns = columns.with_series(names, filled.columns)
@@ -97,7 +96,8 @@ def validated(log: Log, repairs: Repairs = DEFAULT_REPAIRS) -> Traces:
         if columns.sell_per_kwh is not None
         else (f"sell_per_kwh is not given: {repairs.selling_ratio:g} of buy_per_kwh is assumed",)
     )
-    return replace(traces, notes=(*log.notes, *filled.notes, *clipped, *supposed, *oddities(traces)))
+    odd = oddities(traces, log.clock, dict(zip(names, filled.columns, strict=True)))
+    return replace(traces, notes=(*log.notes, *filled.notes, *clipped, *supposed, *odd))
 
 
 def _assembled(log: Log, columns: Columns, repairs: Repairs) -> Traces:

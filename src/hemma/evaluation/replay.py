@@ -62,12 +62,14 @@ def evaluate(
 def evaluate_stacked(
     home: Home, exogenous: Exogenous, controllers: Controller, keys: Array, disturbance_deviation: float = 0.0
 ) -> tuple[Outcome, ...]:
-    """Like ``evaluate`` for one controller a seed: every array of ``controllers`` and ``keys`` is stacked
-    along its first axis, and one compiled call runs all of them."""
-    with jax.enable_x64(True):
-        inputs = in_double((home, exogenous, controllers, keys, disturbance_deviation))
-        trajectories = _replayed_stacked(*inputs)
-        return tuple(outcome_of(trajectories.steps, (seed,)) for seed in range(len(keys)))
+    """``evaluate`` for one controller a seed: every array of ``controllers`` and ``keys`` is stacked along
+    its first axis. They run one after the other, so that no outcome depends on how many there are."""
+
+    def evaluated(run: int) -> Outcome:
+        controller = jax.tree.map(lambda x: x[run] if eqx.is_array(x) else x, controllers)
+        return evaluate(home, exogenous, controller, keys[run], disturbance_deviation)
+
+    return tuple(evaluated(run) for run in range(len(keys)))
 
 
 def _run(
@@ -78,14 +80,11 @@ def _run(
 
 
 _replayed = eqx.filter_jit(_run)
-_replayed_stacked = eqx.filter_jit(
-    eqx.filter_vmap(_run, in_axes=(None, None, eqx.if_array(0), eqx.if_array(0), None))
-)
 
 
-def outcome_of(steps: Step, index: tuple[int, ...] = ()) -> Outcome:
-    """The outcome of carried-out ``steps``, shape (slots,), or of one of many stacked in front."""
-    taken: Any = jax.tree.map(lambda x: np.asarray(x)[index], steps)
+def outcome_of(steps: Step) -> Outcome:
+    """The outcome of carried-out ``steps``, shape (slots,)."""
+    taken: Any = jax.tree.map(np.asarray, steps)
     return Outcome(
         battery_power=taken.action.battery_power,
         hvac_power=taken.action.hvac_power,

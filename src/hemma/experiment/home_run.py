@@ -6,28 +6,27 @@ from enum import IntEnum, auto
 from functools import partial
 from typing import Any
 
+from hemma.methods import AIRL, HA_1, controls, learned
+from hemma.methods.bill import AbstractBillLearner
+from hemma.methods.imitation import AbstractImitator
+from hemma.methods.measured import known_in_test, measured, runnable
+from hemma.methods.method import AbstractLearner
 from hemma.results.ledger import Ledger
-from hemma.results.records import DemonstrationRuns, Run
+from hemma.results.records import DemonstrationRuns, MethodRuns
 from hemma.results.results import HomeResults
 from hemma.results.store import Store
 from hemma.results.summary import method_runs
 from hemma.stages.case import Case, empty_results
-from hemma.stages.default import choose_forecast
 from hemma.stages.demonstrate import Expert
-from hemma.stages.explicit import Sweep, explicit_lesson, explicit_methods, sweep_comfort_price
 from hemma.stages.identify import identify
-from hemma.stages.judge import Judge
-from hemma.stages.lessons import ANY_LENGTH, imitations, lessons
+from hemma.stages.judge import Judge, plain_optimum
 from hemma.stages.play import play
-from hemma.stages.references import References, plain_optimum
-from hemma.stages.train import Lesson, Trained, train_lesson, train_lessons
+from hemma.stages.train import Lesson, Trained, train_all
+from hemma.studies.data_efficiency.lengths import USUAL, OtherLength, other_lengths
 from hemma.studies.pareto.bands import Bands, bands_lesson
 from hemma.studies.pareto.pareto import Pareto
 from hemma.studies.recommendation.recommend import Tryout
 from hemma.studies.regret.split import split_regrets
-
-LENGTHS = ("HA-1", "HA-2", ANY_LENGTH)
-"""One method at several lengths of the demonstrations."""
 
 
 class Stage(IntEnum):
@@ -41,13 +40,19 @@ class Stage(IntEnum):
 
 
 @dataclass(frozen=True)
-class Learned:
-    """A learned method on its way into the results."""
+class Shown:
+    """What is learned from demonstrations, for methods and studies, before any of it is trained."""
 
-    method: str
-    lesson: Lesson
-    days: int | None = None
-    """Length of the demonstrations."""
+    lessons: dict[str, Lesson]
+    """Of the methods, by name."""
+    lengths: Sequence[OtherLength]
+    bands: Bands | None
+
+    @property
+    def all(self) -> list[Lesson]:
+        """Every lesson."""
+        bands = [] if self.bands is None else [self.bands.lesson]
+        return [*self.lessons.values(), *(other.lesson for other in self.lengths), *bands]
 
 
 @dataclass(frozen=True)
@@ -60,101 +65,106 @@ class HomeRun:
 
     def up_to(self, last: Stage) -> None:
         """Run the stages, as far as ``last``."""
-        results = empty_results(self.case)
         identification = identify(self.case, self.store)
-        results = self._put(results, identification=identification.found)
+        results = self._put(empty_results(self.case), identification=identification.found)
         if last is Stage.IDENTIFY:
             return
         expert = Expert(self.case, identification)
-        imitating, bands = self._imitating(expert), bands_lesson(expert, self.store)
+        shown = self._shown(expert)
         if last is Stage.DEMONSTRATE:
             return
         if last is Stage.TRAIN:
-            trained = self._train(imitating, bands)
-            for _, learned in self._paid(expert):
-                train_lesson(learned.lesson, self.store)
+            trained = train_all(shown.all, self.store)
+            trained |= train_all(list(self._others(expert).values()), self.store)
             self._recommended(results, expert, trained)
             return
-        self._measure(results, expert, imitating, bands)
+        self._measure(results, expert, shown)
 
-    def _imitating(self, expert: Expert) -> list[Learned]:
-        """The methods that learn from demonstrations."""
-        wanted = imitations(self.case.experiment, self.case.training_days)
-        made = lessons(self.case, expert, self.store, wanted)
-        return [Learned(one.method, lesson, one.days) for one, lesson in zip(wanted, made, strict=True)]
+    def _methods(self) -> tuple[AbstractLearner, ...]:
+        return learned(self.case.experiment)
 
-    def _train(self, imitating: Sequence[Learned], bands: Bands | None) -> dict[str, Trained]:
-        """The controllers of each lesson by its label; lessons of one kind are trained in one call."""
-        waiting = [learned.lesson for learned in imitating] + ([] if bands is None else [bands.lesson])
-        trained: dict[str, Trained] = {}
-        for kind in dict.fromkeys(lesson.kind for lesson in waiting):
-            same = [lesson for lesson in waiting if lesson.kind == kind]
-            made = train_lessons(same, self.store)
-            trained |= {lesson.label: one for lesson, one in zip(same, made, strict=True)}
-        return trained
+    def _shown(self, expert: Expert) -> Shown:
+        imitating = [method for method in self._methods() if isinstance(method, AbstractImitator)]
+        lessons = {method.name: method.training_job(expert, self.store) for method in imitating}
+        return Shown(
+            lessons,
+            other_lengths(expert, self.store, imitating),
+            bands_lesson(expert, self.store, imitating),
+        )
 
-    def _paid(self, expert: Expert) -> list[tuple[Sweep, Learned]]:
-        """The methods that learn from the explicit reward, each with the sweep that set its beta_T."""
-        paid = []
-        for method in explicit_methods(self.case.experiment):
-            sweep = sweep_comfort_price(expert, self.store, method)
-            lesson = explicit_lesson(expert, self.store, method, sweep.chosen)
-            paid.append((sweep, Learned(method, lesson)))
-        return paid
+    def _others(self, expert: Expert) -> dict[str, Lesson]:
+        """The lessons of methods that nobody demonstrates to, by name; some are trained on the way."""
+        others = [method for method in self._methods() if not isinstance(method, AbstractImitator)]
+        return {method.name: method.training_job(expert, self.store) for method in others}
 
-    def _measure(
-        self, results: HomeResults, expert: Expert, imitating: Sequence[Learned], bands: Bands | None
-    ) -> None:
-        """Baselines first, since they are quick; then what is learned, measured when it is trained."""
+    def _measure(self, results: HomeResults, expert: Expert, shown: Shown) -> None:
+        """What needs no training first, since it is quick; then what is learned, measured when trained."""
         judge = Judge(self.case, self.store)
         judge.write_exogenous()
-        references = References(judge, expert).methods()
-        methods = {name: method_runs(runs) for name, runs in references.items()}
+        known = known_in_test(judge, expert)
+        methods = {
+            method.name: method_runs(measured(method, judge, known)) for method in runnable(controls(), known)
+        }
         results = self._put(results, methods=methods, optimum=plain_optimum(judge))
-        trained = self._train(imitating, bands)
+        trained = train_all(shown.all, self.store)
         results = self._recommended(results, expert, trained)
-        for learned in imitating:
-            results = self._learned(results, judge, learned, trained[learned.lesson.label])
-        paid = self._paid(expert)
-        for _, learned in paid:
-            results = self._learned(results, judge, learned, train_lesson(learned.lesson, self.store))
-        results = self._put(results, regret=split_regrets(judge, expert, results.methods))
+        for name, lesson in shown.lessons.items():
+            results = self._learned(results, name, self._judged(judge, lesson, trained))
+        for other in shown.lengths:
+            results = self._length(results, other.days, self._judged(judge, other.lesson, trained))
+        others = self._others(expert)
+        for name, lesson in others.items():
+            found = self._judged(judge, lesson, train_all([lesson], self.store))
+            results = self._learned(results, name, found)
+        results = self._put(results, regret=split_regrets(judge, known, results.methods))
+        self._pareto(results, judge, expert, shown.bands, trained)
+
+    def _judged(self, judge: Judge, lesson: Lesson, trained: dict[str, Trained]) -> MethodRuns:
+        one = trained[lesson.label]
+        return method_runs(judge.judged(lesson.label, one.mark, partial(play, self.case, lesson, one)))
+
+    def _learned(self, results: HomeResults, name: str, found: MethodRuns) -> HomeResults:
+        """The results with those of one more method; HA-1 and HA-2 are points of the data efficiency too."""
+        results = self._put(results, methods={**results.methods, name: found})
+        method = {method.name: method for method in self._methods()}[name]
+        if not isinstance(method, AbstractImitator):
+            return results
+        days = method.seen_days(self.case.experiment, self.case.training_days)
+        results = self._put(results, demonstration_days={**results.demonstration_days, name: days})
+        return self._length(results, days, found) if method in USUAL else results
+
+    def _length(self, results: HomeResults, days: int, found: MethodRuns) -> HomeResults:
+        length = DemonstrationRuns(**dict(found), days=days, method=AIRL.name)
+        lengths = sorted((*results.data_efficiency, length), key=lambda length: length.days)
+        return self._put(results, data_efficiency=tuple(lengths))
+
+    def _pareto(
+        self,
+        results: HomeResults,
+        judge: Judge,
+        expert: Expert,
+        bands: Bands | None,
+        trained: dict[str, Trained],
+    ) -> None:
+        """Cost against comfort: the proven frontier up to the furthest control, and the sweeps."""
         pareto = Pareto(judge)
-        deviations = [run.total_temperature_deviation or 0.0 for runs in references.values() for run in runs]
+        fixed = [results.methods[method.name] for method in controls() if method.name in results.methods]
+        deviations = [run.total_temperature_deviation or 0.0 for one in fixed for run in one.runs]
         points = pareto.frontier(max(deviations))
-        for sweep, _ in paid:
-            points += pareto.comfort_prices(sweep)
+        for method in self._methods():
+            if isinstance(method, AbstractBillLearner):
+                points += pareto.comfort_prices(method.name, method.sweep(expert, self.store))
         if bands is not None:
-            points += pareto.comfort_bands(bands, trained[bands.lesson.label], results.methods["HA-1"].runs)
+            usual = results.methods[HA_1.name].runs
+            points += pareto.comfort_bands(bands, trained[bands.lesson.label], usual)
         self._put(results, pareto=points)
 
     def _recommended(self, results: HomeResults, expert: Expert, trained: dict[str, Trained]) -> HomeResults:
-        choice = choose_forecast(expert, self.store)
-        found = Tryout(expert, self.store, choice, trained.get("HA-1")).recommendation()
-        return self._put(results, recommendation=found)
-
-    def _learned(self, results: HomeResults, judge: Judge, learned: Learned, trained: Trained) -> HomeResults:
-        lesson = learned.lesson
-        runs = judge.judged(lesson.label, trained.mark, partial(play, self.case, lesson, trained))
-        return self._put(results, **_found(results, learned, runs))
+        methods = {method.name: trained[method.name] for method in self._methods() if method.name in trained}
+        return self._put(results, recommendation=Tryout(expert, self.store, methods).recommendation())
 
     def _put(self, results: HomeResults, **found: Any) -> HomeResults:
         """Write the results with what was ``found``, by the names of their fields."""
         results = results.model_copy(update=found)
         self.ledger.put(self.case.name, results)
         return results
-
-
-def _found(results: HomeResults, learned: Learned, runs: tuple[Run, ...]) -> dict[str, Any]:
-    """What one more method adds; HA-1 and HA-2 are points of the data efficiency as well."""
-    found: dict[str, Any] = {}
-    method = method_runs(runs)
-    if learned.method != ANY_LENGTH:
-        found["methods"] = {**results.methods, learned.method: method}
-        if learned.days is not None:
-            found["demonstration_days"] = {**results.demonstration_days, learned.method: learned.days}
-    if learned.method in LENGTHS and learned.days is not None:
-        length = DemonstrationRuns(**dict(method), days=learned.days, method=ANY_LENGTH)
-        lengths = (*results.data_efficiency, length)
-        found["data_efficiency"] = tuple(sorted(lengths, key=lambda length: length.days))
-    return found

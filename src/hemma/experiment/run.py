@@ -4,12 +4,14 @@ from pathlib import Path
 from typing import Any
 
 from hemma.experiment.home_run import HomeRun, Stage
+from hemma.methods import learned
 from hemma.results.ledger import open_ledger
 from hemma.results.progress import Progress, Silence
 from hemma.results.reading import json_content
 from hemma.results.store import Store
 from hemma.settings.keys import outside
 from hemma.stages.job import Job, at_work, checked
+from hemma.stages.reach import unreachable
 
 __all__ = ["Job", "Stage", "run"]
 
@@ -22,8 +24,11 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     traces or version differ is done again.
     """
     progress = Silence() if progress is None else progress
+    learned(job.experiment)  # refuses unknown names before any work
     cases = checked(job, is_taught=last > Stage.IDENTIFY)
     with at_work(job.folder, job.command, progress):
+        for said in [said for case in cases for said in unreachable(case)]:
+            progress.noticed(said)
         ledger = open_ledger(job.folder, job.command, outside(job.experiment), progress)
         for case in cases:
             HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)

@@ -34,6 +34,8 @@ class ObservationModel:
     """
 
     name: str
+    meaning: str = "the paper's state"
+    """What is seen, in plain words."""
     past: bool = False
     published: bool = False
     forecast: bool = False
@@ -49,11 +51,25 @@ MODELS = {
     model.name: model
     for model in (
         PAPER,
-        ObservationModel("past", past=True),
-        ObservationModel("published", published=True),
-        ObservationModel("forecast", forecast=True),
-        ObservationModel("past and forecast", past=True, forecast=True),
-        ObservationModel("published and forecast", published=True, forecast=True),
+        ObservationModel("past", "the last 24 hours and the day of the week", past=True),
+        ObservationModel(
+            "published", "the prices of the coming hours as far as they are published", published=True
+        ),
+        ObservationModel(
+            "forecast", "a forecast of the coming hours, and how well it did of late", forecast=True
+        ),
+        ObservationModel(
+            "past and forecast",
+            "the last 24 hours, the day of the week and a forecast of the coming hours",
+            past=True,
+            forecast=True,
+        ),
+        ObservationModel(
+            "published and forecast",
+            "published prices and a forecast of what is not published",
+            published=True,
+            forecast=True,
+        ),
     )
 }
 """All that there are, by name."""

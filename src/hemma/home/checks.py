@@ -4,7 +4,7 @@ from typing import Any
 
 from jax.core import Tracer
 
-from hemma.errors import HemmaError
+from hemma.errors import ParameterError
 
 
 def require(owner: str, holds: Any, expected: str, came: Any) -> None:
@@ -12,4 +12,4 @@ def require(owner: str, holds: Any, expected: str, came: Any) -> None:
     if isinstance(holds, Tracer) or isinstance(came, Tracer):
         return
     if not bool(holds):
-        raise HemmaError(f"{owner}: expected {expected}, got {came}; correct this setting")
+        raise ParameterError(owner, expected, came)

@@ -1,6 +1,7 @@
 """The methods, each a value; a new one is one file and one line in ``METHODS``."""
 
-from hemma.forecasting.observations import MODELS
+from hemma.errors import HemmaError, shortened
+from hemma.forecasting.observations import MODELS, PAPER
 from hemma.methods.airl import AIRL, GAIL, HA_1, HA_2
 from hemma.methods.bill import DDPG_METHOD, PPO
 from hemma.methods.cloning import CLONING
@@ -17,6 +18,7 @@ from hemma.methods.planners import (
     MPC_YESTERDAY,
 )
 from hemma.methods.rules import NO_BATTERY, RULE, THRESHOLDS
+from hemma.settings.experiment import Experiment
 
 METHODS: tuple[AbstractMethod, ...] = (
     HA_1,
@@ -27,13 +29,13 @@ METHODS: tuple[AbstractMethod, ...] = (
     CLONING,
     PPO,
     DDPG_METHOD,
-    RULE,
-    NO_BATTERY,
-    THRESHOLDS,
-    MPC_FORECAST,
     DEFAULT,
+    MPC_FORECAST,
     MPC_HOURLY_MEANS,
     MPC_YESTERDAY,
+    THRESHOLDS,
+    RULE,
+    NO_BATTERY,
     DEFAULT_PUBLISHED,
     MPC_PERFECT,
     HMPC,
@@ -41,8 +43,7 @@ METHODS: tuple[AbstractMethod, ...] = (
     DNLP,
     OPTIMUM,
 )
-"""All there are. Those that are not trained stand from the simplest to the one that takes most: of methods
-that cannot be told from the best the first is recommended."""
+"""All there are, in the order of tables and figures."""
 
 
 def controls() -> tuple[AbstractControl, ...]:
@@ -51,7 +52,7 @@ def controls() -> tuple[AbstractControl, ...]:
 
 
 def learners() -> dict[str, AbstractLearner]:
-    """Those that are trained, by name: as they stand in ``METHODS``, then with more to see or another teacher."""
+    """Those that are trained, by name: as in ``METHODS``, then with more to see or another teacher."""
     plain = [method for method in METHODS if isinstance(method, AbstractLearner)]
     found = {method.name: method for method in plain}
     for method in plain:
@@ -64,15 +65,27 @@ def learners() -> dict[str, AbstractLearner]:
     return found
 
 
+def learned(experiment: Experiment) -> tuple[AbstractLearner, ...]:
+    """Those that an experiment asks for, in the order of ``METHODS``; ``HemmaError`` for a name of none."""
+    known = learners()
+    asked = [name for name in known if experiment.learned is None and not known[name].plain]
+    asked += experiment.learned or ()
+    for name in asked:
+        if name not in known:
+            plain = [one for one in known if not known[one].plain]
+            models = [one for one in MODELS if one != PAPER.name]
+            raise HemmaError(
+                f"learned: expected names of methods that learn ({', '.join(plain)}); behind one, if it is "
+                f"to see more than the paper's state, one of {', '.join(models)}; behind that, if it "
+                f"imitates and a planner without hindsight is to demonstrate, causal; got {shortened(name)}"
+            )
+    order = list(known)
+    return tuple(
+        known[name] for name in sorted(asked, key=lambda name: order.index(known[name].plain or name))
+    )
+
+
 def method_of(name: str) -> AbstractMethod | None:
     """The method of that name; None if there is none."""
     known = {method.name: method for method in (*METHODS, AIRL)}
     return known.get(name) or learners().get(name)
-
-
-GRAMMAR = (
-    "the name of a method that learns ({names}); behind it, if it is to see more than the paper's state, one of "
-    f"{', '.join(name for name in MODELS if name != 'paper')}; behind that, if it imitates and a planner "
-    "without hindsight is to demonstrate, causal"
-)
-"""What a name in the setting ``learned`` may be, for readers."""

@@ -2,8 +2,8 @@
 
 from abc import abstractmethod
 from dataclasses import dataclass, replace
-from enum import Enum
-from typing import Self
+from enum import StrEnum
+from typing import TypeVar
 
 from hemma.methods.method import AbstractLearner
 from hemma.results.fingerprint import fingerprint
@@ -17,8 +17,10 @@ from hemma.stages.demonstrate import Demonstration, Expert, demonstration
 from hemma.stages.sight import Sight, sight_of
 from hemma.stages.train import Lesson
 
+Imitator = TypeVar("Imitator", bound="AbstractImitator")
 
-class Length(Enum):
+
+class Length(StrEnum):
     """Length of the demonstrations, as the settings have it."""
 
     SHORT = "demonstration_days"
@@ -65,7 +67,7 @@ class AbstractImitator(AbstractLearner):
             return min(experiment.long_demonstration_days, training_days)
         return experiment.demonstration_days
 
-    def taught_causally(self) -> Self:
+    def taught_causally(self: Imitator) -> Imitator:
         """The same method, taught by the default controller, which knows no more than its pupil."""
         return replace(
             self,

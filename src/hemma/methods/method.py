@@ -2,9 +2,9 @@
 
 import zlib
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Self
+from typing import TypeVar
 
 from hemma.forecasting.observations import PAPER, ObservationModel
 from hemma.forecasting.outlook import Outlook
@@ -15,6 +15,8 @@ from hemma.results.store import Store
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Expert
 from hemma.stages.train import Lesson
+
+Learner = TypeVar("Learner", bound="AbstractLearner")
 
 
 class Group(StrEnum):
@@ -41,6 +43,9 @@ class AbstractMethod(ABC):
     """How it is drawn; without one, a look that depends on its name alone."""
     is_candidate: bool = True
     """Whether it may be recommended for a home, if what it has learned from leaves days to judge it on."""
+    effort: int = 4
+    """What it takes to set up and run, from 0, a thermostat, to 4, a trained policy: of methods that cannot
+    be told from the best, the one that takes least is recommended."""
 
     @property
     def is_causal(self) -> bool:
@@ -95,8 +100,8 @@ class AbstractLearner(AbstractMethod):
     observation_model: ObservationModel = PAPER
     """What its policy sees."""
     is_taught_causally: bool = False
-    """Whether a planner that knows no more than the policy demonstrates, instead of the expert in hindsight."""
-    plain: str = field(default="")
+    """Whether a planner that knows no more than the policy demonstrates, not the expert in hindsight."""
+    plain: str = ""
     """Name of the method that sees the paper's state and has the usual teacher; empty where it is that."""
 
     @abstractmethod
@@ -107,7 +112,7 @@ class AbstractLearner(AbstractMethod):
     def seen_days(self, experiment: Experiment, training_days: int) -> int:
         """How many of the first days of the training period it learns from."""
 
-    def seeing(self, model: ObservationModel) -> Self:
+    def seeing(self: Learner, model: ObservationModel) -> Learner:
         """The same method with more to see."""
         if model == PAPER:
             return self

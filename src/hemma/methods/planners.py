@@ -1,4 +1,4 @@
-"""Rolling planners: each plans again in every slot, through the identified building, with its own forecast."""
+"""Rolling planners: they plan again in every slot, through the identified building, by a forecast."""
 
 from abc import abstractmethod
 from dataclasses import dataclass
@@ -90,38 +90,43 @@ class DefaultPlanner(AbstractPlanner):
 
 MPC_PERFECT = SimplePlanner(
     name="MPC perfect",
+    effort=2,
     group=Group.HINDSIGHT,
     forecast=perfect,
-    meaning="the same planner as MPC forecast, told the next hours exactly: what is left is due to its horizon "
-    "and to the identified building",
+    meaning="the same planner as MPC forecast, told the next hours exactly: what is left is due to its "
+    "horizon and to the identified building",
     look=Look(GREY, MIXED, "v"),
     is_candidate=False,
 )
 DEFAULT = DefaultPlanner(
     name="default",
+    effort=3,
     meaning="the controller that Hemma uses unless told otherwise: plans battery and HVAC of the next hours "
     "together in every slot, does the first slot of the plan, measures, and plans again; the building is the "
-    "identified network, and of several forecasts fitted to the past it takes the one that cost least to plan "
-    "with on training days that the forecast had not seen",
+    "identified network, and of several forecasts fitted to the past it takes the one that cost least to "
+    "plan with on training days that the forecast had not seen",
     look=Look(SKY, "-", "P"),
 )
 DEFAULT_PUBLISHED = DefaultPlanner(
     name="default published",
+    effort=3,
     group=Group.PUBLISHED,
     knows_published=True,
-    meaning="the same controller where prices are published ahead: it knows today's, and from the afternoon on "
-    "tomorrow's",
+    meaning="the same controller where prices are published ahead: it knows today's, and from the afternoon "
+    "on tomorrow's",
     look=Look(SKY, DOTTED, "X"),
     is_candidate=False,
 )
 MPC_FORECAST = FittedPlanner(
     name="MPC forecast",
+    effort=2,
     meaning="the same planner with the simplest fitted forecast: yesterday, corrected by how today differs "
     "from it",
     look=Look(GREY, "-", "o"),
 )
 MPC_HOURLY_MEANS = SimplePlanner(
     name="MPC hourly means",
+    effort=2,
     forecast=hourly_means,
     meaning="the same planner, expecting the training period's mean at each time of day",
     look=Look(GREY, DASHED, "s"),
@@ -129,6 +134,7 @@ MPC_HOURLY_MEANS = SimplePlanner(
 )
 MPC_YESTERDAY = SimplePlanner(
     name="MPC yesterday",
+    effort=2,
     forecast=yesterday,
     meaning="the same planner, expecting the last known value at the same time of day",
     look=Look(GREY, DOTTED, "^"),

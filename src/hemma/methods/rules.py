@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hemma.control.comfort import ComfortHold
 from hemma.control.rule import Rule
-from hemma.control.thresholds import PriceThresholds, fit_thresholds
+from hemma.control.thresholds import Thresholds, fit_thresholds
 from hemma.methods.looks import DASHED, DOTTED, PURPLE, VERMILLION, Look
 from hemma.methods.method import AbstractControl, Group, Known
 
@@ -33,12 +33,12 @@ class NoBattery(AbstractControl):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Thresholds(AbstractControl):
+class FittedThresholds(AbstractControl):
     """Two prices, fitted to the past."""
 
     group: Group = Group.RULES
 
-    def controller(self, known: Known) -> PriceThresholds:
+    def controller(self, known: Known) -> Thresholds:
         """Fitted through the building as it was identified."""
         return fit_thresholds(known.expert.planning_home, known.outlook.past)
 
@@ -49,16 +49,19 @@ class Thresholds(AbstractControl):
 
 RULE = Thermostat(
     name="Rule",
+    effort=0,
     meaning="a thermostat with hysteresis; the battery rests",
     look=Look(VERMILLION, DASHED, "X"),
 )
 NO_BATTERY = NoBattery(
     name="no battery",
+    effort=0,
     meaning="holds the temperature at the edge of comfort by the identified building; there is no battery",
     look=Look(VERMILLION, DOTTED, "P"),
 )
-THRESHOLDS = Thresholds(
+THRESHOLDS = FittedThresholds(
     name="thresholds",
+    effort=1,
     meaning="charges below one price and discharges above another, both fitted on the training period; the "
     "HVAC holds the edge of comfort by the identified building",
     look=Look(PURPLE, DOTTED, "D"),

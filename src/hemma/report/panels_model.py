@@ -2,8 +2,8 @@
 
 from matplotlib.figure import Figure
 
+from hemma.methods.looks import BLUE, VERMILLION
 from hemma.report.canvas import FAINT, INK, days_below, legend_above, new_figure
-from hemma.report.methods import BLUE, VERMILLION
 from hemma.report.series import FreeRun
 
 

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from hemma.methods.looks import BLUE, GREY, ORANGE, SKY
 from hemma.report.canvas import INK, new_figure
-from hemma.report.methods import BLUE, GREY, ORANGE, SKY
 from hemma.report.numbers import decimals
 from hemma.report.rows import label_rows, method_rows, rows_height, write_value
 from hemma.results.results import HomeResults

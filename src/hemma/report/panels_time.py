@@ -4,8 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from hemma.methods.looks import GREEN, ORANGE
 from hemma.report.canvas import FAINT, INK, days_below, legend_above
-from hemma.report.methods import GREEN, ORANGE, look_of
+from hemma.report.methods import look_of
 from hemma.report.week import Week, battery_rests
 from hemma.results.results import HomeResults
 

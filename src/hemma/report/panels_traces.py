@@ -10,8 +10,9 @@ from matplotlib.gridspec import GridSpec, GridSpecFromSubplotSpec
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from hemma.methods.looks import GREEN
 from hemma.report.canvas import FAINT, midnights, new_figure
-from hemma.report.methods import GREEN, look_of
+from hemma.report.methods import look_of
 from hemma.report.panels_time import PRICE_COLOUR, step_values
 from hemma.report.week import Week
 from hemma.results.results import HomeResults

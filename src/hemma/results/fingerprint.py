@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 from datetime import date
 from functools import cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import jax
@@ -46,8 +47,12 @@ def plain(value: Any) -> Any:
     """``value`` in a form that JSON writes the same way each time; arrays become digests of their content."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
-    if isinstance(value, type):
-        return value.__qualname__
+    if isinstance(value, type | FunctionType):
+        return (
+            f"{value.__module__}.{value.__qualname__}"
+            if isinstance(value, FunctionType)
+            else value.__qualname__
+        )
     if isinstance(value, date):
         return value.isoformat()
     if isinstance(value, tuple | list):

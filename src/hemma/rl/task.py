@@ -17,6 +17,9 @@ from hemma.rl.policies.actions import to_fractions
 from hemma.rl.policies.scaling import NOTHING, Context, StateScaler, fit_scaler
 from hemma.types import Action, Array, Costs, Exogenous, Observation
 
+LEAST_ROOM = 2048
+"""Slots: 85 days by the hour, so that a season and a day of it share compiled code."""
+
 
 class Demonstrated(eqx.Module):
     """Demonstrations as anyone may bring them: the paper's states and actions in their units."""
@@ -140,27 +143,14 @@ def explicit_task(
 
 
 def stack(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
-    """All tasks along a new first axis; shorter traces and demonstrations are padded with zeros, unread."""
-
-    def together(*leaves: Array) -> Array:
-        if leaves[0].ndim == 0:
-            return jnp.stack(leaves)
-        length = max(leaf.shape[0] for leaf in leaves)
-        return jnp.stack([_pad(leaf, length) for leaf in leaves])
-
-    return jax.tree.map(together, *tasks)
+    """All tasks along a new first axis, each padded with zeros, unread, to the length of ``room``."""
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves), *map(_padded, tasks))
 
 
-def side_by_side(tasks: Sequence[Task[Teacher]]) -> Task[Teacher]:
-    """Stacked tasks, one after the other along their axis of runs, padded to one length."""
-
-    def together(*leaves: Array) -> Array:
-        if leaves[0].ndim == 1:
-            return jnp.concatenate(leaves)
-        length = max(leaf.shape[1] for leaf in leaves)
-        return jnp.concatenate([jax.vmap(lambda x: _pad(x, length))(leaf) for leaf in leaves])
-
-    return jax.tree.map(together, *tasks)
+def room(slots: int) -> int:
+    """To how many slots traces of so many are padded: few lengths share compiled code, and it depends on
+    nothing but the traces, because code compiled for another length may add up in another order."""
+    return max(LEAST_ROOM, 2 ** (slots - 1).bit_length())
 
 
 def _environment(
@@ -191,6 +181,15 @@ def _observed(states: Float[Array, "samples 7"]) -> Observation:
 def _stream(exogenous: Exogenous) -> UInt[Array, ""]:
     digest = zlib.crc32(np.ascontiguousarray(exogenous.load, np.float64).tobytes())
     return jnp.asarray(digest, jnp.uint32)
+
+
+def _padded(task: Task[Teacher]) -> Task[Teacher]:
+    def timed(task: Task) -> tuple:
+        shown = (task.teacher.transitions,) if isinstance(task.teacher, Expert) else ()
+        return task.environment.exogenous, task.environment.context, *shown
+
+    length = room(task.environment.exogenous.slots)
+    return eqx.tree_at(timed, task, jax.tree.map(lambda x: _pad(x, length), timed(task)))
 
 
 def _pad(leaf: Array, length: int) -> Array:

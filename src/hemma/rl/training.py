@@ -5,7 +5,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import equinox as eqx
 import jax
@@ -14,14 +14,23 @@ from jaxtyping import Float
 
 from hemma.checkpoint import load_header, load_tree, save_tree
 from hemma.errors import HemmaError
-from hemma.home import HomeState, Step
+from hemma.home import HomeState
 from hemma.rl.environment import Environment
 from hemma.rl.policies.policy import Policy, PolicyController
 from hemma.rl.task import Task
 from hemma.types import Array
 
+Result = TypeVar("Result")
+
 CHUNK = 25
 """Iterations between two looks at a run: one row of its learning curve, one occasion to save it."""
+WIDTH = 2
+"""Runs in one call of the compiled code, whatever there is to train and whatever it is trained on.
+
+Compiled code adds up in another order where the batch is wider, and training makes another run of it. With a
+width of its own every run is the same alone and among others, on one core and on many. One run a call takes
+half as long again; more than two take as long as two.
+"""
 
 
 @runtime_checkable
@@ -75,14 +84,14 @@ class Training(eqx.Module):
 
 def begin(task: Task, algorithm: Algorithm) -> Training:
     """All runs of a stacked task at iteration 0."""
-    state = _start(task, algorithm)
+    state = _side_by_side(partial(_start, algorithm=algorithm), task)
     shape = jax.eval_shape(partial(_chunk, algorithm=algorithm), state, task)[1]
     return Training(state, jax.tree.map(lambda x: jnp.zeros((x.shape[0], 0), x.dtype), shape))
 
 
 def advance(training: Training, task: Task, algorithm: Algorithm) -> Training:
     """All runs, one chunk of iterations further. Raises if a run has diverged."""
-    state, row = _side_by_side(training.state, task, algorithm)
+    state, row = _side_by_side(partial(_chunk, algorithm=algorithm), training.state, task)
     figures = jnp.stack([jnp.asarray(leaf, float) for leaf in jax.tree.leaves(row)])
     healthy = jnp.all(jnp.isfinite(figures), axis=0)
     if not bool(jnp.all(healthy)):
@@ -124,27 +133,36 @@ def load(path: Path, task: Task, algorithm: Algorithm) -> Training:
 
 def controllers(training: Training, task: Task, algorithm: Algorithm) -> PolicyController:
     """The resulting policies as controllers, stacked like the task."""
-    policies = eqx.filter_vmap(algorithm.policy)(training.state)
+    return _acting(training.state, task, algorithm)
+
+
+def blank_controllers(task: Task, algorithm: Algorithm) -> PolicyController:
+    """Controllers of these sizes, to be filled from a checkpoint; nothing is computed for it."""
+    shapes = eqx.filter_eval_shape(lambda t: _acting(_start(t, algorithm), t, algorithm), task)
+    return jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
+
+
+def _acting(state: Any, task: Task, algorithm: Algorithm) -> PolicyController:
+    policies = eqx.filter_vmap(algorithm.policy)(state)
     return PolicyController(policies, task.environment.scaler, task.environment.planning_home)
 
 
-def _side_by_side(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Curve]:
-    """One chunk of all runs, a part of the runs on each core.
+def _side_by_side(function: Callable[..., Result], *stacked: Any) -> Result:
+    """What ``function`` makes of all runs, ``WIDTH`` of them a call, a call on each core at a time.
 
-    XLA uses little more than one core for a program of many small steps, so each core gets its own.
+    XLA uses little more than one core for a program of many small steps, so each core gets its own calls.
     """
-    runs = task.seed.shape[0]
-    cores = min(os.cpu_count() or 1, runs) if jax.default_backend() == "cpu" else 1
-    size = -(-runs // cores)
-    places = jnp.arange(cores * size) % runs  # equal parts share their compiled code; what is over is cut off
+    runs = jax.tree.leaves(stacked)[0].shape[0]
+    calls = -(-runs // WIDTH)
+    places = jnp.arange(calls * WIDTH) % runs  # the last call is filled up; what is over is cut off
 
-    def part(core: int) -> tuple[Any, Curve]:
-        own = places[core * size : (core + 1) * size]
-        mine = jax.tree.map(lambda x: x[own], (state, task))
-        return jax.block_until_ready(_chunk(*mine, algorithm=algorithm))
+    def call(number: int) -> Result:
+        own = places[number * WIDTH : (number + 1) * WIDTH]
+        return jax.block_until_ready(function(*jax.tree.map(lambda x: x[own], stacked)))
 
-    with ThreadPoolExecutor(cores) as pool:
-        parts = list(pool.map(part, range(cores)))
+    cores = os.cpu_count() or 1 if jax.default_backend() == "cpu" else 1
+    with ThreadPoolExecutor(min(cores, calls)) as pool:
+        parts = list(pool.map(call, range(calls)))
     return jax.tree.map(lambda *leaves: jnp.concatenate(leaves)[:runs], *parts)
 
 
@@ -168,15 +186,15 @@ def _chunk(state: Any, task: Task, algorithm: Algorithm) -> tuple[Any, Curve]:
 
 def _score(policy: Policy, environment: Environment) -> tuple[Array, Array]:
     """Daily cost and mean deviation of the mean action on the training traces, padding left out."""
-    home, traces = environment.home, environment.exogenous
+    home = environment.home
 
-    def slot(state: HomeState, _: None) -> tuple[HomeState, Step]:
+    def slot(_: Array, carry: tuple[HomeState, Array, Array]) -> tuple[HomeState, Array, Array]:
+        state, cost, deviation = carry
         fractions = policy.mean(environment.features(state, state.slot))
         step = environment.step(state, jnp.zeros((), int), fractions, jnp.zeros(()))
-        return step.state, step
+        cost = cost + step.costs.transaction + step.costs.ageing
+        return step.state, cost, deviation + step.costs.temperature_deviation
 
-    _, steps = jax.lax.scan(slot, home.reset(), length=traces.slots)
-    counted = jnp.arange(traces.slots) < environment.available
-    days = environment.available * home.slot_length / 24
-    cost = jnp.sum(jnp.where(counted, steps.costs.transaction + steps.costs.ageing, 0.0)) / days
-    return cost, jnp.sum(jnp.where(counted, steps.costs.temperature_deviation, 0.0)) / environment.available
+    first = (home.reset(), jnp.zeros(()), jnp.zeros(()))
+    _, cost, deviation = jax.lax.fori_loop(0, environment.available, slot, first)
+    return cost / (environment.available * home.slot_length / 24), deviation / environment.available

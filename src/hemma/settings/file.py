@@ -1,7 +1,7 @@
 """Settings as YAML, read and written: one clear message for an unknown key or a value that cannot be."""
 
 import difflib
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -9,9 +9,10 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from hemma.errors import HemmaError
+from hemma.errors import HemmaError, shortened
 from hemma.settings.experiment import Experiment
 from hemma.settings.keys import explanations, inside, key_of, outside, section
+from hemma.settings.yaml_file import read_yaml
 
 
 def read_settings(path: Path) -> Experiment:
@@ -20,20 +21,14 @@ def read_settings(path: Path) -> Experiment:
     Raises ``HemmaError`` with the file, the key and the cure for a file that cannot be read, an unknown
     key, and a value of the wrong kind or out of range.
     """
-    try:
-        given = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
-    except (OSError, UnicodeDecodeError) as error:
-        raise HemmaError(f"{path}: expected a settings file (YAML), cannot read it: {error}") from error
-    except yaml.YAMLError as error:
-        raise HemmaError(f"{path}: expected YAML, for example `seeds: 3`: {error}") from error
-    return experiment_of(given, path)
+    return experiment_of(read_yaml(path), path)
 
 
 def experiment_of(given: Any, path: Path) -> Experiment:
     """The experiment that keys and values, found in the file ``path``, describe; see ``read_settings``."""
     content = _merged(outside(Experiment()), {} if given is None else given)
     try:
-        return inside(Experiment, section(Experiment).model_validate(content))
+        return inside(Experiment, section(Experiment).model_validate(content), given)
     except ValidationError as error:
         raise HemmaError(f"{path}: {_explained(error, content)}") from error
     except HemmaError as error:
@@ -74,9 +69,10 @@ def _merged(defaults: Any, given: Any) -> Any:
 
 def _explained(error: ValidationError, content: Any) -> str:
     first = error.errors()[0]
-    place = ".".join(str(part) for part in first["loc"]) or "the file"
+    place = ".".join(shortened(part) for part in first["loc"]) or "the file"
     if first["type"] != "extra_forbidden":
-        return f"{place}: {first['msg'].removeprefix('Value error, ')}, got {first['input']!r}. Correct it"
+        wrong, came = first["msg"].removeprefix("Value error, "), shortened(repr(first["input"]))
+        return f"{place}: {wrong}, got {came}. Correct it"
     siblings = content
     for part in first["loc"][:-1]:
         siblings = siblings[part]
@@ -84,14 +80,3 @@ def _explained(error: ValidationError, content: Any) -> str:
     near = difflib.get_close_matches(str(first["loc"][-1]), known, 1)
     hint = f"did you mean {near[0]}?" if near else f"the keys there are {', '.join(known)}"
     return f"{place}: unknown key; {hint} `hemma settings` prints all of them"
-
-
-class _Loader(yaml.SafeLoader):
-    """Refuses a key that stands twice, of which YAML would silently take the last."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
-        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise yaml.YAMLError(f"the key {key} stands twice{node.start_mark}")
-        return super().construct_mapping(node, deep)

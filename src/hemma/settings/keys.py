@@ -2,7 +2,9 @@
 
 import ast
 import inspect
+import re
 import textwrap
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from itertools import pairwise
@@ -11,6 +13,7 @@ from typing import Annotated, Any, Optional, get_args, get_origin, get_type_hint
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
+from hemma.errors import HemmaError, ParameterError, shortened
 from hemma.home import Battery, ComfortBand, ExplicitThermalModel, Hvac
 from hemma.identification.excitation import Excitation
 from hemma.identification.settings import IdentificationSettings
@@ -18,6 +21,7 @@ from hemma.optimisation.horizon import Horizon
 from hemma.optimisation.hvac import DescentSettings
 from hemma.optimisation.programme import SolverSettings
 from hemma.settings.experiment import Experiment, ParetoSettings
+from hemma.settings.plausibility import complaint
 from hemma.types import Scalar
 
 NAMES: dict[type, dict[str, str]] = {
@@ -63,10 +67,12 @@ class Keys(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-def _no_switch(value: Any) -> Any:
-    """YAML reads yes, no, on and off as switches; none of them is a number."""
+def _number(value: Any) -> Any:
+    """YAML reads yes, no, on and off as switches; neither they nor a text such as 1_0 is a number."""
     if isinstance(value, bool):
         raise ValueError(f"a number is expected, not {'yes' if value else 'no'}")
+    if isinstance(value, str):
+        raise ValueError("a valid number is expected, an integer for a count")
     return value
 
 
@@ -97,15 +103,44 @@ def outside(value: Any) -> Any:
     return [outside(item) for item in value] if isinstance(value, tuple) else value
 
 
-def inside(target: type, keys: Keys) -> Any:
-    """The parameters that checked keys stand for; their own checks raise ``HemmaError``."""
-    hints = get_type_hints(target)
-    values = {
-        field.name: inside(hints[field.name], value) if isinstance(value, Keys) else value
-        for field in fields(target)
-        for value in [getattr(keys, field.name)]
-    }
-    return target(**values)
+def inside(target: type, keys: Keys, given: Any, place: str = "") -> Any:
+    """The parameters that checked keys stand for.
+
+    A value that is not plausible or contradicts another raises ``HemmaError``, told by the file's keys;
+    ``given`` is what the file says of this section, so that a default can be called one.
+    """
+    hints, said = get_type_hints(target), given if isinstance(given, Mapping) else {}
+    values = {}
+    for name in (field.name for field in fields(target)):
+        value, key = getattr(keys, name), key_of(target, name)
+        if isinstance(value, Keys):
+            values[name] = inside(hints[name], value, said.get(key), f"{place}{key}.")
+            continue
+        wrong = complaint(target, name, value)
+        if wrong is not None:
+            raise HemmaError(f"{place}{key}: expected {wrong}; got {_told(key, value, said)}. Correct it")
+        values[name] = value
+    try:
+        return target(**values)
+    except ParameterError as error:
+        raise HemmaError(_in_keys(error, target, values, said, place)) from error
+
+
+def _in_keys(
+    error: ParameterError, target: type, values: Mapping[str, Any], given: Mapping[str, Any], place: str
+) -> str:
+    """What contradicts what, in the keys of the file, with all values that take part."""
+    named = [name for name in values if re.search(rf"\b{name}\b", error.expected)]
+    expected = error.expected
+    for name in named:
+        expected = re.sub(rf"\b{name}\b", key_of(target, name), expected)
+    came = [f"{key_of(target, n)} {_told(key_of(target, n), values[n], given)}" for n in named]
+    where = place.rstrip(".") or error.owner
+    return f"{where}: expected {expected}, got {', '.join(came) or shortened(error.came)}. Correct it"
+
+
+def _told(key: str, value: Any, given: Mapping[str, Any]) -> str:
+    return shortened(outside(value)) + ("" if key in given else " (the default)")
 
 
 def explanations(target: type) -> dict[str, str]:
@@ -129,5 +164,5 @@ def _checked(hint: Any, any_sign: bool) -> Any:
     if hint in (float, int, Scalar):
         kind = int if hint is int else float
         limit = Field() if any_sign else Field(ge=0)
-        return Annotated[kind, BeforeValidator(_no_switch), limit]
+        return Annotated[kind, BeforeValidator(_number), limit]
     return hint

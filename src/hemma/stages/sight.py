@@ -9,7 +9,6 @@ from jaxtyping import Int
 from hemma.forecasting.observations import PAPER, ObservationModel, Observer
 from hemma.forecasting.outlook import Outlook, yesterday
 from hemma.home import Controller
-from hemma.methods.pupils import Pupil
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
 from hemma.rl.policies.policy import InformedController, PolicyController
@@ -57,11 +56,12 @@ class Sight:
         """In the test period."""
         return self.over(self.case.training, self.case.test, self.case.parts.test.weekdays())
 
-    def held_out(self, first: int) -> Context:
-        """In the training period from the slot ``first`` on, which was not learned from."""
+    def held_out(self, first: int, slots: int | None = None) -> Context:
+        """In the training period from slot ``first`` on (``slots`` or all), which was not learned from."""
         case = self.case
-        past, period = case.training.window(0, first), case.training.window(first, case.training.slots)
-        return self.over(past, period, case.parts.training.weekdays()[first:])
+        stop = case.training.slots if slots is None else first + slots
+        past, period = case.training.window(0, first), case.training.window(first, stop)
+        return self.over(past, period, case.parts.training.weekdays()[first:stop])
 
     def over(self, past: Exogenous, period: Exogenous, weekdays: Int[np.ndarray, "slots"]) -> Context:
         """In a period, as it was read, after a past; ``weekdays`` are those of the period, Monday 0."""
@@ -72,15 +72,16 @@ class Sight:
         return self.observer.context(outlook, weekdays)
 
 
-def sight_of(pupil: Pupil, expert: Expert, store: Store) -> Sight:
-    """What a pupil sees; a forecast is the one that the default controller plans with."""
+def sight_of(model: ObservationModel, expert: Expert, store: Store, forecasts: bool = False) -> Sight:
+    """What a policy sees; a forecast is the one that the default controller plans with.
+
+    ``forecasts`` says whether its teacher needs one where it does not.
+    """
     case, settings = expert.case, expert.case.experiment.default
-    if not (pupil.model.forecast or pupil.is_causal):
-        return Sight(case, Observer(pupil.model, yesterday, settings.published_at), (settings.published_at,))
+    if not (model.forecast or forecasts):
+        return Sight(case, Observer(model, yesterday, settings.published_at), (settings.published_at,))
     chosen = choose_forecast(expert, store).candidate
-    return Sight(
-        case, Observer(pupil.model, chosen.forecaster, settings.published_at), (chosen.name, settings)
-    )
+    return Sight(case, Observer(model, chosen.forecaster, settings.published_at), (chosen.name, settings))
 
 
 def informed(controllers: PolicyController, context: Context) -> Controller:

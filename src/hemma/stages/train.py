@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import accumulate
 from pathlib import Path
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 
@@ -16,8 +15,8 @@ from hemma.forecasting.observations import PAPER
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
 from hemma.rl.policies.policy import PolicyController
-from hemma.rl.task import Task, side_by_side
-from hemma.rl.training import Algorithm, Training, begin, controllers, load, save, train
+from hemma.rl.task import Task
+from hemma.rl.training import Algorithm, Training, blank_controllers, controllers, load, save, train
 from hemma.stages.curves import write_curves
 from hemma.stages.rewards import keep_rewards
 from hemma.stages.sight import Sight
@@ -47,8 +46,8 @@ class Lesson:
 
     @property
     def kind(self) -> Hashable:
-        """Lessons of one kind can be trained in one call: the same algorithm, as many features."""
-        return self.algorithm, self.task.environment.width
+        """Lessons of one kind can be trained together: the same algorithm, as many features, as much room."""
+        return self.algorithm, self.task.environment.context.shape[1:]
 
     @property
     def mark(self) -> str:
@@ -68,6 +67,13 @@ class Trained:
     """Wall-clock time in which all runs were trained side by side, compilation included; of lessons trained
     together each has the share of its runs [s]."""
     mark: str
+    sight: Sight | None = None
+    """What the policies see besides the paper's state, if anything."""
+
+    @property
+    def runs(self) -> int:
+        """How many runs there are."""
+        return self.controllers.scaler.centre.shape[0]
 
 
 @dataclass(frozen=True)
@@ -154,6 +160,15 @@ def train_lessons(lessons: Sequence[Lesson], store: Store) -> tuple[Trained, ...
     return tuple(_taken(lesson, store) for lesson in lessons)
 
 
+def train_all(lessons: Sequence[Lesson], store: Store) -> dict[str, Trained]:
+    """The controllers of each lesson by its label; those of one kind are trained in one call."""
+    trained: dict[str, Trained] = {}
+    for kind in dict.fromkeys(lesson.kind for lesson in lessons):
+        same = [lesson for lesson in lessons if lesson.kind == kind]
+        trained |= zip([lesson.label for lesson in same], train_lessons(same, store), strict=True)
+    return trained
+
+
 def train_lesson(lesson: Lesson, store: Store) -> Trained:
     """The controllers of one lesson."""
     return train_lessons([lesson], store)[0]
@@ -177,7 +192,7 @@ def _together(lessons: Sequence[Lesson]) -> Lesson:
     first = lessons[0]
     if len(lessons) == 1:
         return first
-    task = side_by_side([lesson.task for lesson in lessons])
+    task = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *[lesson.task for lesson in lessons])
     basis = fingerprint("together", [lesson.mark for lesson in lessons])
     return Lesson(f"{first.label}-and-{len(lessons) - 1}-more", first.algorithm, task, basis)
 
@@ -200,19 +215,13 @@ def _taken(lesson: Lesson, store: Store) -> Trained:
             f"{lesson.label}: expected the controllers just trained in {store.folder}, they are gone or "
             "changed; let one run at a time use a results folder, and run the same command again"
         )
-    stored = load_tree(store.folder / store.model(f"{lesson.label}.safetensors"), _structure(lesson))
-    return Trained(stored, _curves(lesson, store), content["seconds"], lesson.mark)
+    like = blank_controllers(lesson.task, lesson.algorithm)
+    stored = load_tree(store.folder / store.model(f"{lesson.label}.safetensors"), like)
+    return Trained(stored, _curves(lesson, store), content["seconds"], lesson.mark, lesson.sight)
 
 
 def _curves(lesson: Lesson, store: Store) -> tuple[str, ...]:
     return tuple(store.curve(f"{lesson.label}-{run}.csv") for run in range(lesson.runs))
-
-
-def _structure(lesson: Lesson) -> PolicyController:
-    """Controllers of these sizes, to be filled from a checkpoint; nothing is computed for it."""
-    algorithm = lesson.algorithm
-    shapes = eqx.filter_eval_shape(lambda t: controllers(begin(t, algorithm), t, algorithm), lesson.task)
-    return jax.tree.map(lambda leaf: jnp.zeros(leaf.shape, leaf.dtype), shapes)
 
 
 def _message(training: Training) -> str:

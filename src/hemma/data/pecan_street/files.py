@@ -2,6 +2,7 @@
 
 import gzip
 import math
+import re
 import tarfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,7 +15,8 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from jaxtyping import Float, Int
 
-from hemma.data.source_file import GZIP
+from hemma.data.csv_table import number
+from hemma.data.source_file import GZIP, cut
 from hemma.errors import HemmaError
 
 if TYPE_CHECKING:
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
 TIME_COLUMNS = ("local_15min", "localhour", "localminute")
 HOME_COLUMN = "dataid"
 ROWS_AT_A_TIME = 200_000
+LARGEST_HOME = 2.0**53
+"""Numbers of homes are below this."""
 
 
 @dataclass(frozen=True)
@@ -81,15 +85,20 @@ class DataportFile:
                 raise
             except (ValueError, EOFError, OSError, zlib.error) as error:
                 raise HemmaError(
-                    f"{self.path}: expected rows of {len(self.header)} cells: {error}. Fetch the file again"
+                    f"{self.path}: expected rows of {len(self.header)} cells: {_reason(error)}. Correct the "
+                    "file, or fetch it again"
                 ) from error
 
     def _piece(self, frame: "pandas.DataFrame", circuits: Sequence[str]) -> Piece:
         line = np.array(frame.index, np.int64) + 2
         home = self._numbers(frame, HOME_COLUMN, line)
-        if not np.isfinite(home).all():
-            row = int(np.argmin(np.isfinite(home)))
-            raise HemmaError(f"{self.path}, line {line[row]}: expected a number in {HOME_COLUMN}. Correct it")
+        whole = np.isfinite(home) & (np.abs(home) < LARGEST_HOME) & (home % 1 == 0)
+        if not whole.all():
+            row = int(np.argmin(whole))
+            raise HemmaError(
+                f"{self.path}, line {line[row]}: expected a whole number in {HOME_COLUMN}, got "
+                f"{home[row]:g}. Correct it"
+            )
         return Piece(
             line=line,
             home=home.astype(np.int64),
@@ -112,18 +121,23 @@ class DataportFile:
             values[row] = _number(cell)
             if np.isinf(values[row]):
                 raise HemmaError(
-                    f"{self.path}, line {line[row]}: expected a number in {column}, got {cell!r}. "
+                    f"{self.path}, line {line[row]}: expected a number in {column}, got {cut(str(cell))!r}. "
                     "Correct it, or empty the cell if the value is not known"
                 )
         return values
 
 
-def _number(cell: str | float) -> float:
-    """The number in a cell; text counts as infinite, which nobody accepts."""
-    try:
-        return float(cell)
-    except ValueError:
-        return math.inf
+def _number(cell: object) -> float:
+    """The number in a cell; text counts as infinite, which nobody accepts, and so do true and false."""
+    if isinstance(cell, str):
+        return number(cell.strip())
+    return float(cell) if isinstance(cell, int | float) and not isinstance(cell, bool) else math.inf
+
+
+def _reason(error: Exception) -> str:
+    """What was wrong with the rows; where a quote opens that is never closed, its line."""
+    found = re.search(r"EOF inside string starting at row (\d+)", str(error))
+    return f"a quote that is never closed in line {int(found[1]) + 1}" if found else cut(str(error), 200)
 
 
 def dataport_file(path: Path) -> DataportFile:
@@ -154,8 +168,8 @@ def opened(path: Path) -> Iterator[BufferedIOBase]:
             return
         with path.open("rb") as file, _unpacked(file) as stream:
             yield stream
-    except FileNotFoundError as error:
-        raise HemmaError(f"{path}: expected a readable file, there is none. Check the path") from error
+    except (OSError, tarfile.TarError) as error:
+        raise HemmaError(f"{path}: expected a readable file: {error}. Check the path") from error
 
 
 @contextmanager
@@ -168,7 +182,10 @@ def _member(path: Path, archive: tarfile.TarFile) -> Iterator[BufferedIOBase]:
         and not Path(member.name).name.startswith(("metadata", "."))
     ]
     if len(names) != 1:
-        raise HemmaError(f"{path}: expected one CSV file in the archive, got {names}. Unpack it and name one")
+        raise HemmaError(
+            f"{path}: expected one CSV file in the archive, got {cut(str(names), 200)}. Unpack it and "
+            "name one"
+        )
     with _unpacked(cast(BufferedIOBase, archive.extractfile(names[0]))) as stream:
         yield stream
 

@@ -13,6 +13,7 @@ from hemma.data.gaps import counted, fill_gaps
 from hemma.data.pecan_street.circuits import Circuits, HomePower, home_power, instrumented
 from hemma.data.pecan_street.files import dataport_file
 from hemma.data.pecan_street.rows import HomeRows, between, rows_of_home, wall_clock_offsets
+from hemma.data.plausibility import require_plausible
 from hemma.data.surroundings import outdoor_temperature, price
 from hemma.data.time_of_use import TimeOfUse
 from hemma.data.traces import Traces
@@ -114,6 +115,7 @@ def _native(name: str, rows: HomeRows, options: PecanStreetOptions) -> _Power:
     )
     present = _present(power)
     series = tuple(placement.placed(column) for column in present.values())
+    require_plausible(name, clock, tuple(present), series)
     return _Power(clock, tuple(present), series, power.notes)
 
 
@@ -126,7 +128,10 @@ def _whole(name: str, power: _Power, options: PecanStreetOptions) -> _Power:
     """The same between its first and last complete row, short holes filled."""
     complete = np.flatnonzero(np.all(np.isfinite(power.series), axis=0))
     if not len(complete):
-        raise HemmaError(f"{name}: expected rows in which {', '.join(power.names)} are known, got none")
+        raise HemmaError(
+            f"{name}: expected rows in which {', '.join(power.names)} are known, got none. Choose "
+            "another home or period"
+        )
     first, stop = int(complete[0]), int(complete[-1]) + 1
     clock, notes = power.clock.window(first, stop), power.notes
     cut = power.clock.slots - clock.slots
@@ -151,7 +156,10 @@ def _resampled(name: str, power: _Power, slot_length: float) -> _Power:
     begins = np.flatnonzero(wall % step == 0)
     slots = (clock.slots - int(begins[0])) // factor if len(begins) else 0
     if slots < 2:
-        raise HemmaError(f"{name}: expected at least two whole slots of {slot_length:g} h, got {slots}")
+        raise HemmaError(
+            f"{name}: expected at least two whole slots of {slot_length:g} h, got {slots}. Take a "
+            "longer period or shorter slots"
+        )
     first = int(begins[0])
     stop = first + slots * factor
     series = tuple(column[first:stop].reshape(slots, factor).mean(axis=1) for column in power.series)

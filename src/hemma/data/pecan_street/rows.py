@@ -52,7 +52,9 @@ def between(stamps: Stamps, start: str | None, stop: str | None) -> Bool[np.ndar
         try:
             inside &= bound(wall, np.datetime64(text, "s"))
         except ValueError as error:
-            raise HemmaError(f"period: expected a day or time such as 2018-06-01, got {text!r}") from error
+            raise HemmaError(
+                f"period: expected a day or time such as 2018-06-01, got {text!r}. Correct it"
+            ) from error
     return inside
 
 

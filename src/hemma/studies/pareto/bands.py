@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 import equinox as eqx
 
 from hemma.home import ComfortBand, Home
+from hemma.methods.airl import HA_1
+from hemma.methods.imitation import demonstrated_task
+from hemma.methods.method import AbstractLearner
 from hemma.results.fingerprint import fingerprint
 from hemma.results.store import Store
 from hemma.rl.task import stack
 from hemma.stages.demonstrate import Expert, demonstration
-from hemma.stages.lessons import airl, demonstrated_task
 from hemma.stages.train import Lesson
 
 LABEL = "HA-1-bands"
@@ -58,11 +60,11 @@ def shifted_experts(expert: Expert, relaxations: Sequence[float]) -> tuple[Shift
     return tuple(bands)
 
 
-def bands_lesson(expert: Expert, store: Store) -> Bands | None:
-    """The experts of all moved bands demonstrate, if any are asked for and HA-1 is."""
+def bands_lesson(expert: Expert, store: Store, methods: Sequence[AbstractLearner]) -> Bands | None:
+    """The experts of all moved bands demonstrate, if any are asked for and HA-1 is among the ``methods``."""
     experiment = expert.case.experiment
     bands = shifted_experts(expert, experiment.pareto.relaxations)
-    if not bands or "HA-1" not in experiment.learned:
+    if not bands or HA_1 not in methods:
         return None
     shown = [demonstration(store, band.expert, experiment.demonstration_days) for band in bands]
     tasks = [
@@ -71,5 +73,5 @@ def bands_lesson(expert: Expert, store: Store) -> Bands | None:
         for seed in range(experiment.pareto.seeds)
     ]
     basis = fingerprint("bands", [d.mark for d in shown])
-    lesson = Lesson(LABEL, airl(experiment), stack(tasks), basis)
+    lesson = Lesson(LABEL, HA_1.algorithm(experiment), stack(tasks), basis)
     return Bands(lesson, tuple(band.limit for band in bands))

@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from hemma.methods.bill import Sweep
 from hemma.results.findings import ParetoPoint
 from hemma.results.records import Run
 from hemma.results.summary import method_runs
-from hemma.stages.explicit import Sweep
 from hemma.stages.judge import Judge
 from hemma.stages.play import play
 from hemma.stages.train import Trained
@@ -47,14 +47,14 @@ class Pareto:
             )
         return tuple(points)
 
-    def comfort_prices(self, sweep: Sweep) -> tuple[ParetoPoint, ...]:
+    def comfort_prices(self, method: str, sweep: Sweep) -> tuple[ParetoPoint, ...]:
         """A method with each beta_T, trained on the first part of the training period."""
         lesson, trained = sweep.lesson, sweep.trained
         runs = self.judge.judged(lesson.label, trained.mark, partial(play, self.judge.case, lesson, trained))
         points = []
         for price in dict.fromkeys(sweep.prices):
             same = [run for own, run in zip(sweep.prices, runs, strict=True) if own == price]
-            points.append(_point(sweep.method, "beta_T", price, same))
+            points.append(_point(method, "beta_T", price, same))
         return tuple(points)
 
     def comfort_bands(self, bands: Bands, trained: Trained, usual: Sequence[Run]) -> tuple[ParetoPoint, ...]:

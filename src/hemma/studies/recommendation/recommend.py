@@ -1,42 +1,38 @@
 """Stage: which controller this home should have, from its training days alone."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import jax
 import numpy as np
 from jaxtyping import Float
 
-from hemma.control.comfort import ComfortHold
-from hemma.control.rule import Rule
-from hemma.control.thresholds import fit_thresholds
-from hemma.evaluation import Outcome, evaluate, evaluate_stacked
-from hemma.forecasting.outlook import DAY, Forecaster, Outlook
-from hemma.forecasting.ridge import fitted, needed_past
-from hemma.home import Controller
+from hemma.evaluation import NEGLIGIBLE, Outcome, evaluate, evaluate_stacked
+from hemma.forecasting.outlook import DAY, Outlook
+from hemma.methods import controls, learners
+from hemma.methods.method import AbstractControl, AbstractLearner, AbstractMethod, Known
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.records import JudgedMethod, Recommendation
 from hemma.results.store import Store
-from hemma.stages.default import Choice
+from hemma.rl.policies.scaling import NOTHING
 from hemma.stages.demonstrate import Expert
-from hemma.stages.folds import outlook_of, planned, training_folds
+from hemma.stages.folds import outlook_of, training_folds
+from hemma.stages.sight import informed
 from hemma.stages.train import Trained
 
 STAGE = "recommend"
-
-Play = Callable[[Outlook], Sequence[Outcome]]
-"""What a method does in a fold, one outcome a run, fitted to nothing but the days before it."""
 
 
 @dataclass(frozen=True)
 class Contender:
     """A method that may be recommended."""
 
-    method: str
-    play: Play
-    needed: int = 0
+    method: AbstractMethod
+    play: Callable[[Outlook], Sequence[Outcome]]
+    """What it does in a fold, one outcome a run, fitted to nothing but the days before it."""
+    needed: int
     """Slots of past that it cannot do without."""
 
 
@@ -46,9 +42,8 @@ class Tryout:
 
     expert: Expert
     store: Store
-    choice: Choice
-    imitator: Trained | None = None
-    """HA-1's controllers; they have seen the first days of the training period, and no others."""
+    trained: Mapping[str, Trained]
+    """Learned methods by name."""
 
     def recommendation(self) -> Recommendation | None:
         """The simplest contender that is about as good as the best; None if there are no days to judge on."""
@@ -66,13 +61,15 @@ class Tryout:
         return Recommendation.model_validate(found)
 
     def _mark(self) -> str:
-        imitator = None if self.imitator is None else self.imitator.mark
-        settings = self.expert.case.experiment
-        layers = code("forecasting", "optimisation", "control", "evaluation")
-        chosen = self.choice.candidate.name
-        return fingerprint(
-            STAGE, layers, self.expert.mark, imitator, settings.default, settings.forecast_horizon, chosen
-        )
+        experiment = self.expert.case.experiment
+        layers = code("forecasting", "optimisation", "control", "evaluation", "methods")
+        settings = (experiment.default, experiment.forecast_horizon, experiment.demonstration_days)
+        contenders = [(one.method, self._mark_of(one)) for one in self._contenders()]
+        return fingerprint(STAGE, layers, self.expert.mark, settings, contenders)
+
+    def _mark_of(self, contender: Contender) -> str | None:
+        trained = self.trained.get(contender.method.name)
+        return None if trained is None else trained.mark
 
     def _found(self) -> Recommendation | None:
         folds = training_folds(self.expert.case)
@@ -80,52 +77,50 @@ class Tryout:
         if not contenders:
             return None
         self.store.progress.started(STAGE, len(folds) * len(contenders))
-        days = {c.method: [] for c in contenders}
-        deviations = {c.method: [] for c in contenders}
+        days = {c.method.name: [] for c in contenders}
+        deviations = {c.method.name: [] for c in contenders}
         for number, fold in enumerate(folds):
             optimum = _optimum(optimum_problem(self.expert.case.home, fold.period))
             for place, contender in enumerate(contenders):
-                outcomes = contender.play(fold)
-                days[contender.method].append(daily_costs(outcomes, optimum, fold.day))
-                deviations[contender.method] += [np.mean(o.temperature_deviation) for o in outcomes]
-                done = number * len(contenders) + place + 1
-                self.store.progress.advanced(STAGE, done, contender.method)
+                name, outcomes = contender.method.name, contender.play(fold)
+                days[name].append(daily_costs(outcomes, optimum, fold.day))
+                deviations[name] += [np.mean(o.temperature_deviation) for o in outcomes]
+                self.store.progress.advanced(STAGE, number * len(contenders) + place + 1, name)
         costs = {method: np.concatenate(parts) for method, parts in days.items()}
         found = recommend(costs, {method: float(np.mean(d)) for method, d in deviations.items()})
         self.store.progress.finished(STAGE, found.method)
         return found
 
-    def _contenders(self) -> tuple[Contender, ...]:
+    def _contenders(self) -> list[Contender]:
         """From the simplest to the one that takes most."""
-        case, believed = self.expert.case, self.expert.planning_home
-        chosen = self.choice.candidate
-        outlook = outlook_of(case)
-        known = (
-            Contender("Rule", self._controller(lambda _: Rule(case.home.hvac, case.home.comfort))),
-            Contender("no battery", self._controller(lambda _: ComfortHold(believed))),
-            Contender(
-                "thresholds", self._controller(lambda fold: fit_thresholds(believed, fold.past)), outlook.day
-            ),
-            Contender("MPC forecast", self._planner(fitted), needed_past(outlook)),
-            Contender("default", self._planner(chosen.forecaster), chosen.needed),
-        )
-        if self.imitator is None:
-            return known
-        seen = round(case.experiment.demonstration_days * DAY / float(case.home.slot_length))
-        return (*known, Contender("HA-1", self._imitates, seen))
+        known = Known(self.expert, self.store, outlook_of(self.expert.case))
+        found = [
+            Contender(method, partial(self._controls, method), method.needed_past(known))
+            for method in controls()
+            if method.is_candidate and method.is_causal
+        ]
+        for name, trained in self.trained.items():
+            method = learners()[name]
+            if method.is_candidate:
+                found.append(Contender(method, partial(self._acts, trained), self._seen(method)))
+        return sorted(found, key=lambda contender: contender.method.effort)
 
-    def _controller(self, make: Callable[[Outlook], Controller]) -> Play:
-        home = self.expert.case.home
-        return lambda fold: [evaluate(home, fold.period, make(fold), jax.random.key(0))]
+    def _seen(self, method: AbstractLearner) -> int:
+        """Slots of the training period that it has learned from."""
+        case = self.expert.case
+        days = method.seen_days(case.experiment, case.training_days)
+        return round(days * DAY / float(case.home.slot_length))
 
-    def _planner(self, forecaster: Forecaster) -> Play:
-        return lambda fold: [planned(self.expert, fold, forecaster)]
+    def _controls(self, method: AbstractControl, fold: Outlook) -> list[Outcome]:
+        controller = method.controller(Known(self.expert, self.store, fold))
+        return [evaluate(self.expert.case.home, fold.period, controller, jax.random.key(0))]
 
-    def _imitates(self, fold: Outlook) -> Sequence[Outcome]:
-        assert self.imitator is not None
-        controllers = self.imitator.controllers
-        keys = jax.random.split(jax.random.key(0), controllers.scaler.centre.shape[0])
-        return evaluate_stacked(self.expert.case.home, fold.period, controllers, keys)
+    def _acts(self, trained: Trained, fold: Outlook) -> Sequence[Outcome]:
+        keys = jax.random.split(jax.random.key(0), trained.runs)
+        sight = trained.sight
+        seen = NOTHING if sight is None else sight.held_out(fold.past.slots, fold.period.slots)
+        acting = informed(trained.controllers, seen)
+        return evaluate_stacked(self.expert.case.home, fold.period, acting, keys)
 
 
 def _optimum(problem: OptimumProblem) -> Callable[[float | None], float]:
@@ -154,7 +149,7 @@ def recommend(costs: dict[str, Float[np.ndarray, "days"]], deviations: dict[str,
 
     ``costs`` [currency/day] are of the same days, in the order of simplicity. One standard error is the rule
     of Breiman et al. 1984 for choosing among models: of those that cannot be told from the best the simplest
-    is likely to disappoint least.
+    is likely to disappoint least. Among methods of the same cost the one that keeps comfort best is taken.
     """
     best = min(costs, key=lambda method: float(np.mean(costs[method])))
     judged = []
@@ -170,5 +165,11 @@ def recommend(costs: dict[str, Float[np.ndarray, "days"]], deviations: dict[str,
                 mean_temperature_deviation=deviations[method],
             )
         )
-    chosen = next(one.method for one in judged if one.excess <= one.standard_error)
+    simplest = next(one for one in judged if one.excess <= one.standard_error)
+    alike = [one for one in judged if abs(_known(one.daily_cost) - _known(simplest.daily_cost)) <= NEGLIGIBLE]
+    chosen = min(alike, key=lambda one: _known(one.mean_temperature_deviation)).method
     return Recommendation(method=chosen, days=len(costs[best]), judged=tuple(judged))
+
+
+def _known(value: float | None) -> float:
+    return np.inf if value is None else value

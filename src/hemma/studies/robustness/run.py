@@ -6,6 +6,7 @@ from pathlib import Path
 
 import hemma
 from hemma.errors import HemmaError
+from hemma.methods import learned
 from hemma.results.ledger import CODE
 from hemma.results.progress import Progress, Silence
 from hemma.results.reading import write_record
@@ -15,12 +16,9 @@ from hemma.settings.experiment import DataEfficiency
 from hemma.settings.keys import outside
 from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
-from hemma.stages.explicit import explicit_lesson, explicit_methods, sweep_comfort_price
 from hemma.stages.identify import identify
 from hemma.stages.job import Job, at_work, checked
-from hemma.stages.lessons import imitations, lessons
-from hemma.stages.planners import planners
-from hemma.stages.train import Trained, train_lesson, train_lessons
+from hemma.stages.train import train_all
 from hemma.studies.robustness.records import ROBUSTNESS_FILE, RobustHome, Robustness
 from hemma.studies.robustness.report import write_robustness_report
 from hemma.studies.robustness.stored import stored_job, stored_trial, tell_what_differs
@@ -35,6 +33,7 @@ def run_faults(job: Job, progress: Progress | None = None) -> Robustness:
     """
     progress = Silence() if progress is None else progress
     plain = replace(job.experiment, data_efficiency=DataEfficiency(days=()))
+    learned(plain)  # refuses unknown names before any work
     cases = checked(replace(job, experiment=plain))
     with at_work(job.folder, job.command, progress):
         return measure_faults(job, [_trained(case, Store(job.folder, case.name, progress)) for case in cases])
@@ -86,20 +85,5 @@ def measure_faults(job: Job, trials: Sequence[Trial]) -> Robustness:
 
 def _trained(case: Case, store: Store) -> Trial:
     expert = Expert(case, identify(case, store))
-    return Trial(expert, store, learned_methods(expert, store), planners(expert, store))
-
-
-def learned_methods(expert: Expert, store: Store) -> dict[str, Trained]:
-    """The controllers of all learned methods, those of earlier commands where they are kept."""
-    case = expert.case
-    wanted = imitations(case.experiment, case.training_days)
-    made = lessons(case, expert, store, wanted)
-    trained: dict[str, Trained] = {}
-    for kind in dict.fromkeys(lesson.kind for lesson in made):
-        same = [lesson for lesson in made if lesson.kind == kind]
-        done = train_lessons(same, store)
-        trained |= {lesson.label: one for lesson, one in zip(same, done, strict=True)}
-    for method in explicit_methods(case.experiment):
-        sweep = sweep_comfort_price(expert, store, method)
-        trained[method] = train_lesson(explicit_lesson(expert, store, method, sweep.chosen), store)
-    return trained
+    lessons = [method.training_job(expert, store) for method in learned(case.experiment)]
+    return Trial(expert, store, train_all(lessons, store))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from hemma.data import AUSTIN2021_HOMES, Traces
 from hemma.errors import HemmaError
+from hemma.methods import learned
 from hemma.results.progress import Progress
 from hemma.results.results import RESULTS_FILE, Results, load_results
 from hemma.results.store import Store
@@ -17,7 +18,7 @@ from hemma.stages.demonstrate import Expert
 from hemma.stages.identify import identified
 from hemma.stages.job import Job
 from hemma.stages.load import embedded_homes, own_home
-from hemma.stages.planners import planners
+from hemma.stages.sight import sight_of
 from hemma.stages.train import Trained
 from hemma.studies.robustness.records import Robustness
 from hemma.studies.robustness.trial import Trial
@@ -48,16 +49,19 @@ def stored_trial(case: Case, store: Store) -> Trial:
     """The methods of a home as the folder holds them; one that was not trained is left out, and said."""
     expert = Expert(case, identified(store))
     trained = {}
-    for method in case.experiment.learned:
-        mark = store.mark_of(method)
+    for method in learned(case.experiment):
+        mark = store.mark_of(method.name)
         if mark is None:
             store.progress.noticed(
-                f"{case.name}: {method} is left out, the folder holds no unchanged controllers of it"
+                f"{case.name}: {method.name} is left out, the folder holds no unchanged controllers of it"
             )
             continue
-        file = store.folder / store.model(f"{method}.safetensors")
-        trained[method] = Trained(load_controllers(file, expert.planning_home), (), 0.0, mark)
-    return Trial(expert, store, trained, planners(expert, store))
+        controllers = load_controllers(
+            store.folder / store.model(f"{method.name}.safetensors"), expert.planning_home
+        )
+        sight = sight_of(method.observation_model, expert, store)
+        trained[method.name] = Trained(controllers, (), 0.0, mark, sight)
+    return Trial(expert, store, trained)
 
 
 def tell_what_differs(results: Results, found: Robustness, progress: Progress) -> None:

@@ -9,26 +9,26 @@ import equinox as eqx
 import jax
 import numpy as np
 
-from hemma.control.comfort import ComfortHold
 from hemma.control.rolling import rolling_mpc
-from hemma.control.rule import Rule
 from hemma.control.sensors import SafetyLayer, WatchedStep, watched_replay
-from hemma.control.thresholds import fit_thresholds
 from hemma.evaluation import EqualComfort, Outcome, measure
 from hemma.evaluation.replay import outcome_of
 from hemma.forecasting.outlook import Outlook
 from hemma.home import Controller
 from hemma.home.precision import in_double, in_numpy
-from hemma.methods.pupils import PUPILS
+from hemma.methods import controls
+from hemma.methods.measured import runnable
+from hemma.methods.method import AbstractControl, Known
+from hemma.methods.planners import AbstractPlanner
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.record import Number, Range
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
 from hemma.results.summary import intervals, means, summarised
-from hemma.rl.policies.scaling import Context
+from hemma.rl.policies.scaling import NOTHING, Context
 from hemma.stages.demonstrate import Expert
-from hemma.stages.planners import Planner
-from hemma.stages.sight import informed, sight_of
+from hemma.stages.folds import outlook_of
+from hemma.stages.sight import informed
 from hemma.stages.train import Trained
 from hemma.studies.robustness.faults import Fault, FaultSettings, faults
 from hemma.studies.robustness.records import FaultMeasures, FaultMethod, FaultRun, MetFault
@@ -52,9 +52,7 @@ class Trial:
     expert: Expert
     store: Store
     trained: dict[str, Trained]
-    """Learned methods by name."""
-    planners: tuple[Planner, ...]
-    """Those of the results table; the causal ones take part."""
+    """Learned methods by name. Of the others, all take part that know no future."""
 
     def results(self, neighbour: "Trial | None" = None) -> tuple[MetFault, ...]:
         """One entry a fault, nothing wrong first, what a ``neighbour``'s methods do in this home last."""
@@ -77,8 +75,8 @@ class Trial:
     def _marks(self) -> list[Any]:
         """Fingerprints of all that the controllers depend on."""
         learned = sorted((name, one.mark) for name, one in self.trained.items())
-        planned = [(planner.method, planner.facts) for planner in self.planners]
-        return [self.expert.mark, learned, planned, self.expert.case.experiment.forecast_horizon]
+        facts = [(method.name, method.facts(self._known)) for method in self._controls]
+        return [self.expert.mark, learned, facts, self.expert.case.experiment.forecast_horizon]
 
     def _kept(self, fault: Fault, actor: "Trial") -> MetFault:
         layers = code(
@@ -103,32 +101,34 @@ class Trial:
     def runs(self, now: Scene) -> dict[str, list[FaultRun]]:
         """What the methods that learned in this home do in a scene, be it of another one."""
         problem = optimum_problem(now.home, now.exogenous, disturbances=now.readings.disturbance)
-        runs = {
-            method: [self._watched(None, controller, now, problem)]
-            for method, controller in self._plain.items()
-        }
-        causal = [planner for planner in self.planners if planner.is_causal]
-        runs |= {planner.method: [self._planned(planner, now, problem)] for planner in causal}
+        runs: dict[str, list[FaultRun]] = {}
+        for method in self._controls:
+            if isinstance(method, AbstractPlanner):
+                runs[method.name] = [self._planned(method, now, problem)]
+            else:
+                controller = method.controller(self._known)
+                runs[method.name] = [self._watched(None, controller, now, problem)]
         for method, one in self.trained.items():
-            controllers = informed(one.controllers, self._seen(method, now))
-            for seed in range(min(one.controllers.scaler.centre.shape[0], self._settings.runs)):
+            controllers = informed(one.controllers, self._seen(one, now))
+            for seed in range(min(one.runs, self._settings.runs)):
                 controller = jax.tree.map(lambda x, seed=seed: x[seed], controllers)
                 runs.setdefault(method, []).append(self._watched(seed, controller, now, problem))
         return runs
 
-    def _seen(self, method: str, now: Scene) -> Context:
+    def _seen(self, one: Trained, now: Scene) -> Context:
         """What a learned method sees besides the paper's state, as it is read."""
-        case, sight = self.expert.case, sight_of(PUPILS[method], self.expert, self.store)
-        return sight.over(case.training, now.readings.exogenous, case.parts.test.weekdays())
+        if one.sight is None:
+            return NOTHING
+        case = self.expert.case
+        return one.sight.over(case.training, now.readings.exogenous, case.parts.test.weekdays())
 
     @cached_property
-    def _plain(self) -> dict[str, Controller]:
-        case, believed = self.expert.case, self.expert.planning_home
-        return {
-            "Rule": Rule(case.home.hvac, case.home.comfort),
-            "no battery": ComfortHold(believed),
-            "thresholds": fit_thresholds(believed, case.training),
-        }
+    def _known(self) -> Known:
+        return Known(self.expert, self.store, outlook_of(self.expert.case))
+
+    @cached_property
+    def _controls(self) -> list[AbstractControl]:
+        return runnable(tuple(method for method in controls() if method.is_causal), self._known)
 
     def _watched(
         self, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
@@ -141,7 +141,7 @@ class Trial:
         counts = (int(np.sum(np.asarray(changes.limited))), int(np.sum(np.asarray(changes.comfort))))
         return _judged(seed, outcome_of(watched.step), problem, counts)
 
-    def _planned(self, planner: Planner, now: Scene, problem: OptimumProblem) -> FaultRun:
+    def _planned(self, planner: AbstractPlanner, now: Scene, problem: OptimumProblem) -> FaultRun:
         case = self.expert.case
         outlook = Outlook(
             case.training,
@@ -149,7 +149,7 @@ class Trial:
             float(case.home.slot_length),
             case.experiment.forecast_horizon,
         )
-        forecasts = planner.forecaster(outlook)
+        forecasts = planner.forecaster(self._known)(outlook)
         path = rolling_mpc(
             self.expert.planning_home,
             now.home,

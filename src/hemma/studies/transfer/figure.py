@@ -4,8 +4,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
+from hemma.methods.looks import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
 from hemma.report.canvas import FAINT, GRID, INK, new_figure
-from hemma.report.methods import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
 from hemma.report.numbers import percent
 from hemma.results.records import MethodRuns
 from hemma.studies.transfer.records import Transfer

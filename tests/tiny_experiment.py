@@ -6,7 +6,7 @@ from pathlib import Path
 from hemma.data import load_austin2021
 from hemma.experiment.run import Job
 from hemma.results.progress import Silence
-from hemma.settings.experiment import LEARNED, ComfortPrices, DataEfficiency, Experiment, ParetoSettings
+from hemma.settings.experiment import ComfortPrices, DataEfficiency, Experiment, ParetoSettings
 
 
 def tiny_experiment(iterations=50):
@@ -43,7 +43,7 @@ def every_method():
     experiment = tiny_experiment()
     return replace(
         experiment,
-        learned=LEARNED,
+        learned=None,
         maxent=replace(experiment.maxent, iterations=25, windows=2, slots=12),
         cloning=replace(experiment.cloning, iterations=25),
         explicit=replace(experiment.explicit, iterations=25),

@@ -1,0 +1,84 @@
+"""Let methods run the home through the test period and measure what they did."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import jax
+
+from hemma.evaluation import evaluate
+from hemma.home import Controller
+from hemma.methods.hindsight import DNLP
+from hemma.methods.method import AbstractControl, Known
+from hemma.methods.planners import AbstractPlanner
+from hemma.optimisation.nonlinear_programme import casadi_is_installed
+from hemma.results.fingerprint import code, fingerprint
+from hemma.results.records import Run
+from hemma.stages.demonstrate import Expert
+from hemma.stages.folds import outlook_of
+from hemma.stages.judge import Judge, Played
+
+STAGE = "baselines"
+
+
+def known_in_test(judge: Judge, expert: Expert) -> Known:
+    """What methods may go by in the test period."""
+    return Known(expert, judge.store, outlook_of(judge.case), judge.problem)
+
+
+def runnable(methods: tuple[AbstractControl, ...], known: Known) -> list[AbstractControl]:
+    """Those that the past is long enough for; DNLP only where its solver is installed."""
+    enough = [method for method in methods if method.needed_past(known) <= known.outlook.past.slots]
+    if DNLP in enough and not casadi_is_installed():
+        known.store.progress.noticed("DNLP is left out: it needs CasADi, pip install 'hemma[nlp]'")
+        enough.remove(DNLP)
+    return enough
+
+
+def measured(method: AbstractControl, judge: Judge, known: Known) -> tuple[Run, ...]:
+    """The run of a method in the test period, or that of an earlier call."""
+    act = _Act(
+        method.name,
+        _mark(method, known),
+        partial(method.controller, known),
+        isinstance(method, AbstractPlanner),
+    )
+    return _judged(judge, act, method.seconds_to_fit(known))
+
+
+def measured_with_true_model(planner: AbstractPlanner, judge: Judge, known: Known) -> tuple[Run, ...]:
+    """A planner through the thermal model of the simulated home: nobody could, it splits regret."""
+    label = f"{planner.name} with the true model"
+    mark = fingerprint("true model", _mark(planner, known))
+    act = _Act(label, mark, partial(planner.planned, known, judge.case.home), True)
+    return _judged(judge, act, planner.seconds_to_fit(known))
+
+
+@dataclass(frozen=True)
+class _Act:
+    """Something to be measured."""
+
+    label: str
+    mark: str
+    controller: Callable[[], Controller]
+    is_told: bool
+    """Whether it takes so long that its progress is told."""
+
+
+def _judged(judge: Judge, act: _Act, seconds_to_fit: float | None) -> tuple[Run, ...]:
+    case, progress = judge.case, judge.store.progress
+
+    def play() -> Sequence[Played]:
+        if act.is_told:
+            progress.started(act.label, 1)
+        outcome = evaluate(case.home, case.test, act.controller(), jax.random.key(0))
+        if act.is_told:
+            progress.finished(act.label, f"{case.test.slots} plans")
+        return [Played(outcome, seconds_to_train=seconds_to_fit)]
+
+    return judge.judged(act.label, act.mark, play)
+
+
+def _mark(method: AbstractControl, known: Known) -> str:
+    horizon = known.expert.case.experiment.forecast_horizon
+    return fingerprint(STAGE, code("methods"), known.expert.mark, method, horizon, method.facts(known))
