@@ -58,7 +58,7 @@ def place_in(content: Any, keys: Sequence[str | int]) -> str:
     for key in keys:
         if isinstance(inner, Section):
             line = inner.lines.get(str(key), line)
-        inner = inner.get(key) if isinstance(inner, Mapping) else None
+        inner = inner.get(str(key)) if isinstance(inner, Mapping) else None
     name = ".".join(shortened(key) for key in keys) or "the file"
     return name if line is None else f"line {line}: {name}"
 
@@ -109,6 +109,7 @@ def _content(node: yaml.Node) -> Any:
         return _section(node)
     if isinstance(node, yaml.SequenceNode):
         return [_content(item) for item in node.value]
+    assert isinstance(node, yaml.ScalarNode)
     return _plain(node) if node.style is None else _word(node)
 
 

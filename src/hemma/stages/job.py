@@ -76,8 +76,9 @@ def at_work(folder: Path, command: str, progress: Progress) -> Iterator[None]:
     try:
         jax.devices()
     except (RuntimeError, AssertionError) as error:  # a plugin without its device fails either way
+        wanted = os.environ.get("JAX_PLATFORMS")
         raise HemmaError(
-            f"expected a device to compute on, JAX finds none for JAX_PLATFORMS={jax.config.jax_platforms}: "
+            f"expected a device to compute on, JAX finds none for JAX_PLATFORMS={wanted}: "
             f"{str(error)[:200] or 'it is missing'}. Unset JAX_PLATFORMS, or set it to cpu"
         ) from error
     _require_results_folder(folder)
