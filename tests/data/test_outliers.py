@@ -103,7 +103,9 @@ def test_several_absurd_cells_are_counted(write):
 def test_most_of_a_column_out_of_scale_is_a_unit(write):
     in_watts = [("load_kw", k, 350.0 + k % 7) for k in range(480)]
     assert "this looks like W. Divide by 1000" in refusal(write(log(in_watts), FULL))
-    assert "Divide" not in refusal(write(log(in_watts[:200]), FULL))
+    part = refusal(write(log(in_watts[:200]), FULL))
+    assert "Divide" not in part
+    assert part.endswith("A part of the column in another unit? Convert it, or empty these cells")
 
 
 @pytest.mark.parametrize("column", FULL.split(",")[1:])
@@ -152,6 +154,12 @@ def test_milder_spikes_are_told(column, value, told):
     require_plausible("home.csv", CLOCK, [column], [values])
     [note] = unusual_cells(column, CLOCK, values)
     assert note.startswith(f"one slot of {column} stands out, {told}")
+
+
+def test_hours_of_cold_in_summer_are_told():
+    values = series("outdoor_c", [(slot, -50) for slot in range(50, 60)])
+    [note] = unusual_cells("outdoor_c", CLOCK, values)
+    assert note.startswith("10 slots of outdoor_c stand out, -50 degC at 2021-06-03T02:00:00-06:00")
 
 
 def test_a_spike_is_told_in_the_notes_of_a_file(write):

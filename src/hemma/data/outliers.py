@@ -36,7 +36,10 @@ USUAL_PRICE_RATIO = 25.0
 USUAL_PRICE = 0.5
 """Prices [currency/kWh] above both this and that multiple of the median magnitude are told."""
 LARGEST_JUMP = 15.0
-"""A single temperature that is this [degC] away from both its neighbours is told."""
+LARGEST_DISTANCE = 45.0
+"""A temperature so far [degC] from both its neighbours, or (the second) from the median, is told."""
+PART = 0.1
+"""More absurd cells than this share of a column are a part of it in another unit, or a long failure."""
 LONGEST_STILL = {"pv_kw": 24.0, "load_kw": 36.0, "hvac_kw": 48.0, "outdoor_c": 36.0, "indoor_c": 72.0}
 """A sensor whose value stays the same to the last digit for this long [h] is perhaps stuck."""
 
@@ -57,7 +60,8 @@ def absurd_cells(name: str, clock: Clock, column: Series) -> str | None:
         return None
     return (
         f"{_slots(wrong)} of {name} {'is' if wrong.sum() == 1 else 'are'} not to be believed, "
-        f"{_named(name, clock, column, wrong)}: expected {_expected(name)}. {_cause(name, column[wrong])}"
+        f"{_named(name, clock, column, wrong)}: expected {_expected(name)}. "
+        f"{_cause(name, column[wrong], float(wrong.mean()))}"
     )
 
 
@@ -102,11 +106,12 @@ def _absurd(name: str, values: Float[np.ndarray, "known"]) -> Bool[np.ndarray, "
 
 def _far(name: str, values: Series) -> Bool[np.ndarray, "slots"]:
     """What stands out of a column: far from most of what can be believed."""
+    size, rest = np.abs(values), believable(values)
     if name.endswith("_c"):
         steps = np.diff(values)
         jump = (np.abs(steps[:-1]) > LARGEST_JUMP) & (np.abs(steps[1:]) > LARGEST_JUMP)
-        return np.concatenate([[False], jump & (steps[:-1] * steps[1:] < 0), [False]])
-    size, rest = np.abs(values), believable(values)
+        alone = np.concatenate([[False], jump & (steps[:-1] * steps[1:] < 0), [False]])
+        return alone | (np.abs(values - np.median(rest)) > LARGEST_DISTANCE) if len(rest) else alone
     if _is_price(name):
         usual = np.median(np.abs(rest)) if len(rest) else 0.0
         return size > max(USUAL_PRICE, USUAL_PRICE_RATIO * usual)
@@ -135,12 +140,14 @@ def _expected(name: str) -> str:
     return f"at most {DEAREST:g} per kWh, or {DEAREST_RATIO:g} times the median"
 
 
-def _cause(name: str, wrong: Float[np.ndarray, "wrong"]) -> str:
+def _cause(name: str, wrong: Float[np.ndarray, "wrong"], share: float) -> str:
     """What may have happened, and the cure."""
     cells = "the cell" if len(wrong) == 1 else "these cells"
     marks = np.unique(wrong[_is_mark(wrong)])
     if len(marks):
         cause = f"A sentinel: loggers write {marks[0]:g} where they have no value. "
+    elif share > PART:
+        return "A part of the column in another unit? Convert it, or empty these cells"
     elif name.endswith("_kw"):
         cause = "A counter that was reset, or the energy of many slots in one? "
     else:
@@ -156,7 +163,7 @@ def _slots(mask: Bool[np.ndarray, "slots"]) -> str:
 def _named(name: str, clock: Clock, column: Series, cells: Bool[np.ndarray, "slots"]) -> str:
     """The largest of the cells, when it stands, and when the first of them stands."""
     worst, first = int(np.argmax(np.where(cells, np.abs(column), -1.0))), int(np.argmax(cells))
-    positive = np.minimum(column[column > 0], HIGHEST_BELIEVED)
+    positive = believable(column[column > 0])
     ratio = float(column[worst]) / float(np.median(positive)) if len(positive) else 0.0
     times = f"{ratio:.0f}" if ratio < 1e6 else f"{ratio:.3g}"
     return (
