@@ -1,6 +1,8 @@
 """A linear programme with whole-number columns, written down block by block and solved by HiGHS."""
 
+import os
 from dataclasses import dataclass, field
+from functools import cache
 
 import highspy
 import numpy as np
@@ -10,6 +12,7 @@ from scipy.sparse import csr_array
 from hemma.errors import HemmaError
 from hemma.types import Scalar
 
+STANDARD_OUTPUT, STANDARD_ERROR = 1, 2
 PRIMAL_SIMPLEX = 4
 """HiGHS's number for it."""
 FEASIBILITY = 1e-9
@@ -146,6 +149,7 @@ def _least(slope: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
 
 
 def _solver(settings: SolverSettings) -> highspy.Highs:
+    _greeted()
     solver = highspy.Highs()
     solver.setOptionValue("output_flag", False)
     solver.setOptionValue("threads", 1)
@@ -155,6 +159,22 @@ def _solver(settings: SolverSettings) -> highspy.Highs:
     solver.setOptionValue("primal_feasibility_tolerance", FEASIBILITY)
     solver.setOptionValue("dual_feasibility_tolerance", FEASIBILITY)
     return solver
+
+
+@cache
+def _greeted() -> None:
+    """Let HiGHS print its banner to standard error: its first constructor does so before it can be told not
+    to, and standard output belongs to whoever calls."""
+    try:
+        kept = os.dup(STANDARD_OUTPUT)
+    except OSError:  # it is closed
+        return
+    try:
+        os.dup2(STANDARD_ERROR, STANDARD_OUTPUT)
+        highspy.Highs()
+    finally:
+        os.dup2(kept, STANDARD_OUTPUT)
+        os.close(kept)
 
 
 def _model(columns: np.ndarray, rows: np.ndarray, matrix: csr_array) -> highspy.HighsLp:
