@@ -21,7 +21,7 @@ class ParameterError(HemmaError):
         self.owner, self.expected, self.came = owner, expected, came
 
 
-def shortened(value: object) -> str:
-    """A value as a message shows it: one line of at most ``LONGEST`` characters."""
+def shortened(value: object, longest: int = LONGEST) -> str:
+    """A value as a message shows it: one line, at most ``longest`` characters of it."""
     text = " ".join(str(value).split())
-    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+    return text if len(text) <= longest else f"{text[:longest]}... ({len(text)} characters)"

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Float
 
 from hemma.data.clock import Stamps
-from hemma.data.source_file import SourceFile, cut
-from hemma.errors import HemmaError
+from hemma.data.source_file import SourceFile
+from hemma.errors import HemmaError, shortened
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 EXAMPLE_STAMP = "2021-08-01T00:00:00-06:00"
@@ -47,7 +47,7 @@ class CsvTable:
             if math.isinf(values[row]):
                 raise HemmaError(
                     f"{self.path}, line {self.lines[row]}: expected a finite number (or an empty cell) in "
-                    f"{column}, got {cut(cell)!r}. Write it like 0.35 or 3.5e-1, or empty the cell if "
+                    f"{column}, got {shortened(cell)!r}. Write it like 0.35 or 3.5e-1, or empty the cell if "
                     "the value is not known"
                 )
         return values
@@ -69,7 +69,8 @@ class CsvTable:
         if moment is None or moment.utcoffset() is None or moment.microsecond or moment.year not in YEARS:
             raise HemmaError(
                 f"{self.path}, line {self.lines[row]}: expected a time stamp in whole seconds with its "
-                f"offset from UTC, such as {EXAMPLE_STAMP}, got {cut(cell)!r}. Write every time stamp so"
+                f"offset from UTC, such as {EXAMPLE_STAMP}, got {shortened(cell)!r}. Write every "
+                "time stamp so"
             )
         return moment
 
@@ -116,7 +117,7 @@ def _cells(path: Path, line: int, text: str) -> tuple[str, ...]:
     except csv.Error as error:
         raise HemmaError(
             f"{path}, line {line}: expected quotes in pairs, each cell within its line, got a quote that is "
-            f"never closed or stands inside a cell ({error}): {cut(text)!r}. Take the quotes out"
+            f"never closed or stands inside a cell ({error}): {shortened(text)!r}. Take the quotes out"
         ) from error
 
 
@@ -125,19 +126,21 @@ def _check_header(
 ) -> None:
     wanted = f"{place}: expected the columns {','.join(required)}"
     others = [column for column in optional if column and column not in required]
-    wanted += f" and perhaps {cut(','.join(others), LIST)}" if others else ""
+    wanted += f" and perhaps {shortened(','.join(others), LIST)}" if others else ""
     if len(header) == 1 and (";" in header[0] or "\t" in header[0]):
-        raise HemmaError(f"{wanted}, separated by commas, got {cut(header[0])!r}. Save it with commas")
+        raise HemmaError(f"{wanted}, separated by commas, got {shortened(header[0])!r}. Save it with commas")
     missing = [column for column in required if column not in header]
     if missing:
         raise HemmaError(
-            f"{wanted}; missing: {','.join(missing)}, found: {cut(','.join(header), LIST)}. Name the columns "
-            "so in the first line"
+            f"{wanted}; missing: {','.join(missing)}, found: {shortened(','.join(header), LIST)}. Name the "
+            "columns so in the first line"
         )
     _check_names(wanted, header, {*required, *optional})
     twice = sorted({column for column in header if column and header.count(column) > 1})
     if twice:
-        raise HemmaError(f"{wanted} once each; {cut(','.join(twice), LIST)} stands there twice. Take one out")
+        raise HemmaError(
+            f"{wanted} once each; {shortened(','.join(twice), LIST)} stands there twice. Take one out"
+        )
 
 
 def _check_names(wanted: str, header: Sequence[str], known: set[str]) -> None:
@@ -150,7 +153,9 @@ def _check_names(wanted: str, header: Sequence[str], known: set[str]) -> None:
         raise HemmaError(f"{wanted}; column {unnamed[0]} has no name{cause}. Take it out of every line")
     strange = [column for column in header if column not in known]
     if strange:
-        raise HemmaError(f"{wanted}; got also {cut(','.join(strange), LIST)}. Rename them or take them out")
+        raise HemmaError(
+            f"{wanted}; got also {shortened(','.join(strange), LIST)}. Rename them or take them out"
+        )
 
 
 def number(cell: str) -> float:

@@ -46,11 +46,6 @@ def read_source(path: Path) -> SourceFile:
     return SourceFile(path, digest, text)
 
 
-def cut(text: str, longest: int = 60) -> str:
-    """What came, for a message: at most ``longest`` characters of it."""
-    return text if len(text) <= longest else f"{text[:longest]}... ({len(text)} characters)"
-
-
 def _place(path: Path, content: bytes, position: int) -> str:
     return f"{path}, line {content.count(NEWLINE, 0, position) + 1}"
 

@@ -16,8 +16,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hemma.data.csv_table import number
-from hemma.data.source_file import GZIP, cut
-from hemma.errors import HemmaError
+from hemma.data.source_file import GZIP
+from hemma.errors import HemmaError, shortened
 
 if TYPE_CHECKING:
     import pandas
@@ -121,7 +121,7 @@ class DataportFile:
             values[row] = _number(cell)
             if np.isinf(values[row]):
                 raise HemmaError(
-                    f"{self.path}, line {line[row]}: expected a number in {column}, got {cut(str(cell))!r}. "
+                    f"{self.path}, line {line[row]}: expected a number in {column}, got {shortened(cell)!r}. "
                     "Correct it, or empty the cell if the value is not known"
                 )
         return values
@@ -137,7 +137,9 @@ def _number(cell: object) -> float:
 def _reason(error: Exception) -> str:
     """What was wrong with the rows; where a quote opens that is never closed, its line."""
     found = re.search(r"EOF inside string starting at row (\d+)", str(error))
-    return f"a quote that is never closed in line {int(found[1]) + 1}" if found else cut(str(error), 200)
+    return (
+        f"a quote that is never closed in line {int(found[1]) + 1}" if found else shortened(str(error), 200)
+    )
 
 
 def dataport_file(path: Path) -> DataportFile:
@@ -183,7 +185,7 @@ def _member(path: Path, archive: tarfile.TarFile) -> Iterator[BufferedIOBase]:
     ]
     if len(names) != 1:
         raise HemmaError(
-            f"{path}: expected one CSV file in the archive, got {cut(str(names), 200)}. Unpack it and "
+            f"{path}: expected one CSV file in the archive, got {shortened(str(names), 200)}. Unpack it and "
             "name one"
         )
     with _unpacked(cast(BufferedIOBase, archive.extractfile(names[0]))) as stream:

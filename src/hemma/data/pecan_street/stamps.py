@@ -9,8 +9,7 @@ import numpy as np
 from jaxtyping import Int
 
 from hemma.data.gaps import counted
-from hemma.data.source_file import cut
-from hemma.errors import HemmaError
+from hemma.errors import HemmaError, shortened
 
 if TYPE_CHECKING:
     import pandas
@@ -47,9 +46,8 @@ def _form(name: str, cells: Sequence[str], lines: Int[np.ndarray, "rows"]) -> st
     for form, cell, line in zip(forms, cells, lines.tolist(), strict=True):
         if form != forms[0]:
             raise HemmaError(
-                f"{name}, line {line}: expected a time stamp written like {cut(cells[0])!r} before, got "
-                f"{cut(cell)!r}. "
-                "Write all of them in one way"
+                f"{name}, line {line}: expected a time stamp written like {shortened(cells[0])!r}, got "
+                f"{shortened(cell)!r}. Write all of them in one way"
             )
     return forms[0]
 
@@ -79,7 +77,7 @@ def _parsed(
     if len(bad):
         raise HemmaError(
             f"{name}, line {lines[bad[0]]}: expected a time stamp such as 2018-06-01 00:00:00-05, got "
-            f"{cut(cells[int(bad[0])])!r} ({counted(len(bad), 'such row')}). Correct it"
+            f"{shortened(cells[int(bad[0])])!r} ({counted(len(bad), 'such row')}). Correct it"
         )
     return parsed
 
