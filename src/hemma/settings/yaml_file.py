@@ -58,7 +58,7 @@ def place_in(content: Any, keys: Sequence[str | int]) -> str:
     for key in keys:
         if isinstance(inner, Section):
             line = inner.lines.get(str(key), line)
-        inner = inner.get(key) if isinstance(inner, Mapping) else None
+        inner = inner.get(str(key)) if isinstance(inner, Mapping) else None
     name = ".".join(shortened(key) for key in keys) or "the file"
     return name if line is None else f"line {line}: {name}"
 
@@ -105,11 +105,11 @@ def _refused(problem: str, mark: yaml.Mark) -> yaml.MarkedYAMLError:
 
 
 def _content(node: yaml.Node) -> Any:
+    if isinstance(node, yaml.ScalarNode):
+        return _plain(node) if node.style is None else _word(node)
     if isinstance(node, yaml.MappingNode):
         return _section(node)
-    if isinstance(node, yaml.SequenceNode):
-        return [_content(item) for item in node.value]
-    return _plain(node) if node.style is None else _word(node)
+    return [_content(item) for item in node.value]
 
 
 def _section(node: yaml.MappingNode) -> Section:
@@ -128,13 +128,13 @@ def _section(node: yaml.MappingNode) -> Section:
     return section
 
 
-def _word(node: yaml.Node) -> str:
+def _word(node: yaml.ScalarNode) -> str:
     if not node.value.isprintable():
         raise _refused("a word with characters that cannot be shown", node.start_mark)
     return node.value
 
 
-def _plain(node: yaml.Node) -> Any:
+def _plain(node: yaml.ScalarNode) -> Any:
     """A word without quotes: nothing, a switch, a decimal number, or else the word."""
     word = _word(node)
     if word.lower() in NOTHING:
