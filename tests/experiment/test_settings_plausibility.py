@@ -9,6 +9,7 @@ import pytest
 from hemma.errors import HemmaError
 from hemma.settings.experiment import Experiment
 from hemma.settings.file import read_settings, settings_text
+from hemma.settings.keys import key_of
 from hemma.settings.plausibility import ANY, limits_of
 
 TEXT = settings_text(Experiment())
@@ -71,7 +72,7 @@ def written(tmp_path, text):
         ("building: {conductance_kw_per_c: 252}", "expected a conductance in kW/degC", "W/degC"),
         ("pv_scale: 1.0e300", "pv_scale: expected a factor from 0 to 50, got 1e+300", ""),
         ("pv_scale: 100", "pv_scale: expected a factor from 0 to 50, got 100", "per cent"),
-        ("forecast_horizon_h: 2160", "forecast_horizon_h: expected a time in h from 1 to 744", "minutes"),
+        ("forecast_horizon_h: 2160", "forecast_horizon_h: expected a time in h from 0.25 to 744", "minutes"),
         ("default: {published_at_h: 1400}", "published_at_h: expected an hour of the day from 0 to 24", ""),
         ("faults: {temperature_noise_c: 300}", "expected a difference in degC from 0 to 10", ""),
         ("faults: {efficiency: 85}", "faults.efficiency: expected an efficiency as a fraction", "per cent"),
@@ -133,6 +134,25 @@ def test_every_number_has_limits_of_its_own_and_its_default_lies_inside():
         assert limits is not ANY, (target, name)
         for item in value if isinstance(value, tuple) else (value,):
             limits.check(item)
+
+
+def test_no_default_passes_in_another_unit():
+    """In W, Wh, W/degC, ms, minutes, Fahrenheit or kelvin; two defaults are so small that they do."""
+    small, tried = ("tolerance_kw", "ageing_per_kwh"), []
+    for target, name, value in numbers(Experiment()):
+        key = key_of(target, name)
+        others = []
+        if key.endswith(("_kw", "_kwh", "_kw_per_c", "_s")) and key not in small:
+            others = [1000 * value]
+        elif key.endswith("_h"):
+            others = [60 * value]
+        elif key in ("low_c", "high_c", "initial_indoor_c"):
+            others = [1.8 * value + 32, value + 273.15]
+        for other in others:
+            tried.append(key)
+            with pytest.raises(ValueError, match=r"^expected .* got "):
+                limits_of(target, name).check(other)
+    assert len(tried) >= 20
 
 
 def test_units_stand_in_the_names():

@@ -1,6 +1,7 @@
 """MaxEnt IRL: features and gradient by hand, and worlds in which the reward or the behaviour is known."""
 
 import math
+from functools import partial
 
 import equinox as eqx
 import jax

@@ -95,7 +95,7 @@ COMFORT = Limits(5, 35, "a temperature in degC", _degrees)
 DIFFERENCE = Limits(0, 10, "a difference in degC")
 EFFICIENCY = Limits(0.3, 1, "an efficiency as a fraction", _percent)
 SHARE = Limits(0, 1, "a fraction", _percent)
-HOURS = Limits(1, 744, "a time in h", _above("minutes: divide by 60"))
+HOURS = Limits(0.25, 744, "a time in h", _above("minutes: divide by 60"))
 DAYS = Limits(1, 3660, "days")
 RUNS = Limits(1, 1000, "a number of runs")
 FACTOR = Limits(0.01, 1000, "a factor")
@@ -129,10 +129,7 @@ LIMITS: dict[type, dict[str, Limits]] = {
         "margin": DIFFERENCE,
     },
     IdentificationSettings: {"window": HOURS},
-    Horizon: {
-        "planned": Limits(0.01, 24 * 3660, "a time in h"),
-        "carried_out": Limits(0.01, 24 * 3660, "a time in h"),
-    },
+    Horizon: {"planned": HOURS, "carried_out": HOURS},
     DescentSettings: {"tolerance": Limits(0, 0.1, "a power in kW", _above("W: divide by 1000"))},
     SolverSettings: {
         "relative_gap": Limits(0, 0.1, "a fraction", _percent),
