@@ -155,6 +155,7 @@ def test_the_selling_line_is_exact_for_a_share_a_fixed_price_and_a_difference(sh
     exogenous = noisy(3, 6)
     sold = share * exogenous.buying_price + constant
     line = fit_selling(replace(exogenous, selling_price=sold))
+    assert line is not None
     assert (line.slope, line.constant) == pytest.approx((share, constant), abs=1e-12)
 
 

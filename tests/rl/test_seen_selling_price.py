@@ -79,9 +79,9 @@ def test_a_policy_acts_by_it_on_other_days_and_off_the_disk(tmp_path):
     save_tree(tmp_path / "c.safetensors", kept, {})
     again = load_controllers(tmp_path / "c.safetensors", HOME)
     keys = jax.random.split(jax.random.key(0), 1)
-    powers = [evaluate_stacked(HOME, days, one, keys)[0].battery_power for one in (kept, again)]
-    np.testing.assert_array_equal(*powers)
-    assert np.mean(np.sign(powers[0]) == sign) > 0.9
+    power, same = (evaluate_stacked(HOME, days, one, keys)[0].battery_power for one in (kept, again))
+    np.testing.assert_array_equal(power, same)
+    assert np.mean(np.sign(power) == sign) > 0.9
 
 
 def test_a_learned_reward_reads_it_and_keeps_it_on_disk(tmp_path):
