@@ -21,7 +21,7 @@ seeds: 1
 demonstration_days: 1
 identification: {updates: 10, chunk: 10, window_h: 6, batch: 4, width: 2}
 data_efficiency: {days: []}
-pareto: {relaxations: []}
+pareto: {relaxations_c: []}
 """
 
 
