@@ -23,7 +23,7 @@ from hemma.stages.demonstrate import Expert
 from hemma.stages.identify import identify
 from hemma.stages.play import play
 from hemma.stages.sight import Sight
-from hemma.stages.train import train_lesson
+from hemma.stages.train import train_job
 from tiny_experiment import Watching, every_method, tiny_job
 
 HOME = "austin2021-2"
@@ -71,12 +71,12 @@ def expert(case, tmp_path):
 def test_a_pupil_that_sees_more_is_taught_and_acts_by_what_it_sees(case, expert):
     one, store = expert
     made = [method.training_job(one, store) for method in (CLONING, CLONING.seeing(MODELS["published"]))]
-    assert [lesson.task.environment.width for lesson in made] == [8, 20]
+    assert [training_job.task.environment.width for training_job in made] == [8, 20]
     assert made[0].kind != made[1].kind
-    played = [play(case, lesson, train_lesson(lesson, store))[0].outcome for lesson in made]
+    played = [play(case, training_job, train_job(training_job, store))[0].outcome for training_job in made]
     assert not np.allclose(played[0].battery_power, played[1].battery_power)
-    for lesson, model in zip(made, ("paper", "published"), strict=True):
-        path = store.folder / store.model(f"{lesson.label}.safetensors")
+    for training_job, model in zip(made, ("paper", "published"), strict=True):
+        path = store.folder / store.model(f"{training_job.label}.safetensors")
         assert load_header(path)["observation_model"] == model
 
 

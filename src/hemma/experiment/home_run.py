@@ -18,12 +18,12 @@ from hemma.results.store import Store
 from hemma.results.summary import method_runs
 from hemma.stages.case import Case, empty_results
 from hemma.stages.demonstrate import Expert
+from hemma.stages.evaluate import Evaluator, plain_optimum
 from hemma.stages.identify import identify
-from hemma.stages.judge import Judge, plain_optimum
 from hemma.stages.play import play
-from hemma.stages.train import Lesson, Trained, train_all
+from hemma.stages.train import Trained, TrainingJob, train_all
 from hemma.studies.data_efficiency.lengths import USUAL, OtherLength, other_lengths
-from hemma.studies.pareto.bands import Bands, bands_lesson
+from hemma.studies.pareto.bands import Bands, bands_job
 from hemma.studies.pareto.pareto import Pareto
 from hemma.studies.recommendation.recommend import Tryout
 from hemma.studies.regret.split import split_regrets
@@ -43,16 +43,16 @@ class Stage(IntEnum):
 class Shown:
     """What is learned from demonstrations, for methods and studies, before any of it is trained."""
 
-    lessons: dict[str, Lesson]
+    jobs: dict[str, TrainingJob]
     """Of the methods, by name."""
     lengths: Sequence[OtherLength]
     bands: Bands | None
 
     @property
-    def all(self) -> list[Lesson]:
-        """Every lesson."""
-        bands = [] if self.bands is None else [self.bands.lesson]
-        return [*self.lessons.values(), *(other.lesson for other in self.lengths), *bands]
+    def all(self) -> list[TrainingJob]:
+        """Every training job."""
+        bands = [] if self.bands is None else [self.bands.job]
+        return [*self.jobs.values(), *(other.job for other in self.lengths), *bands]
 
 
 @dataclass(frozen=True)
@@ -85,43 +85,44 @@ class HomeRun:
 
     def _shown(self, expert: Expert) -> Shown:
         imitating = [method for method in self._methods() if isinstance(method, AbstractImitator)]
-        lessons = {method.name: method.training_job(expert, self.store) for method in imitating}
+        jobs = {method.name: method.training_job(expert, self.store) for method in imitating}
         return Shown(
-            lessons,
+            jobs,
             other_lengths(expert, self.store, imitating),
-            bands_lesson(expert, self.store, imitating),
+            bands_job(expert, self.store, imitating),
         )
 
-    def _others(self, expert: Expert) -> dict[str, Lesson]:
-        """The lessons of methods that nobody demonstrates to, by name; some are trained on the way."""
+    def _others(self, expert: Expert) -> dict[str, TrainingJob]:
+        """The jobs of methods that nobody demonstrates to, by name; some are trained on the way."""
         others = [method for method in self._methods() if not isinstance(method, AbstractImitator)]
         return {method.name: method.training_job(expert, self.store) for method in others}
 
     def _measure(self, results: HomeResults, expert: Expert, shown: Shown) -> None:
         """What needs no training first, since it is quick; then what is learned, measured when trained."""
-        judge = Judge(self.case, self.store)
-        judge.write_exogenous()
-        known = known_in_test(judge, expert)
+        evaluator = Evaluator(self.case, self.store)
+        evaluator.write_exogenous()
+        known = known_in_test(evaluator, expert)
         methods = {
-            method.name: method_runs(measured(method, judge, known)) for method in runnable(controls(), known)
+            method.name: method_runs(measured(method, evaluator, known))
+            for method in runnable(controls(), known)
         }
-        results = self._put(results, methods=methods, optimum=plain_optimum(judge))
+        results = self._put(results, methods=methods, optimum=plain_optimum(evaluator))
         trained = train_all(shown.all, self.store)
         results = self._recommended(results, expert, trained)
-        for name, lesson in shown.lessons.items():
-            results = self._learned(results, name, self._judged(judge, lesson, trained))
+        for name, job in shown.jobs.items():
+            results = self._learned(results, name, self._judged(evaluator, job, trained))
         for other in shown.lengths:
-            results = self._length(results, other.days, self._judged(judge, other.lesson, trained))
+            results = self._length(results, other.days, self._judged(evaluator, other.job, trained))
         others = self._others(expert)
-        for name, lesson in others.items():
-            found = self._judged(judge, lesson, train_all([lesson], self.store))
+        for name, job in others.items():
+            found = self._judged(evaluator, job, train_all([job], self.store))
             results = self._learned(results, name, found)
-        results = self._put(results, regret=split_regrets(judge, known, results.methods))
-        self._pareto(results, judge, expert, shown.bands, trained)
+        results = self._put(results, regret=split_regrets(evaluator, known, results.methods))
+        self._pareto(results, evaluator, expert, shown.bands, trained)
 
-    def _judged(self, judge: Judge, lesson: Lesson, trained: dict[str, Trained]) -> MethodRuns:
-        one = trained[lesson.label]
-        return method_runs(judge.judged(lesson.label, one.mark, partial(play, self.case, lesson, one)))
+    def _judged(self, evaluator: Evaluator, job: TrainingJob, trained: dict[str, Trained]) -> MethodRuns:
+        one = trained[job.label]
+        return method_runs(evaluator.evaluated(job.label, one.mark, partial(play, self.case, job, one)))
 
     def _learned(self, results: HomeResults, name: str, found: MethodRuns) -> HomeResults:
         """The results with those of one more method; HA-1 and HA-2 are points of the data efficiency too."""
@@ -141,13 +142,13 @@ class HomeRun:
     def _pareto(
         self,
         results: HomeResults,
-        judge: Judge,
+        evaluator: Evaluator,
         expert: Expert,
         bands: Bands | None,
         trained: dict[str, Trained],
     ) -> None:
         """Cost against comfort: the proven frontier up to the furthest control, and the sweeps."""
-        pareto = Pareto(judge)
+        pareto = Pareto(evaluator)
         fixed = [results.methods[method.name] for method in controls() if method.name in results.methods]
         deviations = [run.total_temperature_deviation or 0.0 for one in fixed for run in one.runs]
         points = pareto.frontier(max(deviations))
@@ -156,7 +157,7 @@ class HomeRun:
                 points += pareto.comfort_prices(method.name, method.sweep(expert, self.store))
         if bands is not None:
             usual = results.methods[HA_1.name].runs
-            points += pareto.comfort_bands(bands, trained[bands.lesson.label], usual)
+            points += pareto.comfort_bands(bands, trained[bands.job.label], usual)
         self._put(results, pareto=points)
 
     def _recommended(self, results: HomeResults, expert: Expert, trained: dict[str, Trained]) -> HomeResults:

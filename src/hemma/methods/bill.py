@@ -21,7 +21,7 @@ from hemma.settings.experiment import Experiment
 from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
 from hemma.stages.sight import Sight, informed, sight_of
-from hemma.stages.train import Lesson, Trained, train_lesson
+from hemma.stages.train import Trained, TrainingJob, train_job
 
 STAGE = "comfort price"
 
@@ -30,7 +30,7 @@ STAGE = "comfort price"
 class Sweep:
     """A method trained with several beta_T on the first part of the training period, judged on the rest."""
 
-    lesson: Lesson
+    job: TrainingJob
     trained: Trained
     prices: tuple[float, ...]
     """beta_T of each run [currency/degC for one slot]."""
@@ -49,7 +49,7 @@ class AbstractBillLearner(AbstractLearner):
     def algorithm(self, experiment: Experiment) -> Algorithm:
         """How it learns from the reward."""
 
-    def training_job(self, expert: Expert, store: Store) -> Lesson:
+    def training_job(self, expert: Expert, store: Store) -> TrainingJob:
         """The whole training period, with the beta_T that the sweep chose."""
         case, price = expert.case, self.sweep(expert, store).chosen
         days, seeds = case.first_days(case.training_days), range(case.experiment.seeds)
@@ -59,7 +59,7 @@ class AbstractBillLearner(AbstractLearner):
             [explicit_task(expert.planning_home, case.home, days, price, seed, seen) for seed in seeds]
         )
         basis = fingerprint("explicit", case.mark, expert.identification.mark, price, sight.mark)
-        return Lesson(self.name, self.algorithm(case.experiment), task, basis, sight)
+        return TrainingJob(self.name, self.algorithm(case.experiment), task, basis, sight)
 
     def seen_days(self, experiment: Experiment, training_days: int) -> int:
         """All."""
@@ -82,10 +82,10 @@ class AbstractBillLearner(AbstractLearner):
             [explicit_task(expert.planning_home, case.home, days, price, seed, seen) for price, seed in pairs]
         )
         basis = fingerprint(STAGE, case.mark, expert.identification.mark, settings, sight.mark)
-        lesson = Lesson(f"{self.name}-sweep", self.algorithm(case.experiment), task, basis, sight)
-        trained = train_lesson(lesson, store)
+        job = TrainingJob(f"{self.name}-sweep", self.algorithm(case.experiment), task, basis, sight)
+        trained = train_job(job, store)
         prices = tuple(price for price, _ in pairs)
-        return Sweep(lesson, trained, prices, _chosen(sight, store, lesson, trained, np.asarray(prices)))
+        return Sweep(job, trained, prices, _chosen(sight, store, job, trained, np.asarray(prices)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,11 +129,11 @@ def _learned_days(case: Case) -> int:
     return min(max(wanted, 1), case.training_days - 1)
 
 
-def _chosen(sight: Sight, store: Store, lesson: Lesson, trained: Trained, prices: np.ndarray) -> float:
+def _chosen(sight: Sight, store: Store, job: TrainingJob, trained: Trained, prices: np.ndarray) -> float:
     """beta_T by the mean regret and deviation of its runs on the training days that they did not see."""
     layers = code("rl", "forecasting", "optimisation", "control", "evaluation")
     mark = fingerprint(STAGE, layers, trained.mark)
-    product = f"{lesson.label}-choice"
+    product = f"{job.label}-choice"
     content = store.kept(product, mark)
     if content is not None:
         return content["chosen"]

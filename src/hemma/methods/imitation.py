@@ -15,7 +15,7 @@ from hemma.settings.experiment import Experiment
 from hemma.stages.causal import causal_demonstration
 from hemma.stages.demonstrate import Demonstration, Expert, demonstration
 from hemma.stages.sight import Sight, sight_of
-from hemma.stages.train import Lesson
+from hemma.stages.train import TrainingJob
 
 Imitator = TypeVar("Imitator", bound="AbstractImitator")
 
@@ -39,23 +39,23 @@ class AbstractImitator(AbstractLearner):
     def algorithm(self, experiment: Experiment) -> Algorithm:
         """How it learns from what is shown."""
 
-    def training_job(self, expert: Expert, store: Store) -> Lesson:
+    def training_job(self, expert: Expert, store: Store) -> TrainingJob:
         """One run a seed; it sees the demonstrated days and no others."""
         experiment = expert.case.experiment
-        return self.lesson(expert, store, self.name, experiment.seeds)
+        return self.job(expert, store, self.name, experiment.seeds)
 
-    def lesson(self, expert: Expert, store: Store, label: str, seeds: int) -> Lesson:
+    def job(self, expert: Expert, store: Store, label: str, seeds: int) -> TrainingJob:
         """The same under another label, with so many runs."""
         case = expert.case
         days = self.seen_days(case.experiment, case.training_days)
         sight = sight_of(self.observation_model, expert, store, forecasts=self.is_taught_causally)
         shown = self._shown(expert, store, sight, days)
         seen = sight.learning(days)
-        return Lesson(
+        return TrainingJob(
             label=label,
             algorithm=self.algorithm(case.experiment),
             task=stack([demonstrated_task(expert, shown, seed, seen) for seed in range(seeds)]),
-            basis=fingerprint("lesson", case.home, shown.mark, sight.mark),
+            basis=fingerprint("job", case.home, shown.mark, sight.mark),
             sight=sight,
         )
 

@@ -15,15 +15,15 @@ from hemma.optimisation.nonlinear_programme import casadi_is_installed
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.records import Run
 from hemma.stages.demonstrate import Expert
+from hemma.stages.evaluate import Evaluator, Played
 from hemma.stages.folds import outlook_of
-from hemma.stages.judge import Judge, Played
 
 STAGE = "baselines"
 
 
-def known_in_test(judge: Judge, expert: Expert) -> Known:
+def known_in_test(evaluator: Evaluator, expert: Expert) -> Known:
     """What methods may go by in the test period."""
-    return Known(expert, judge.store, outlook_of(judge.case), judge.problem)
+    return Known(expert, evaluator.store, outlook_of(evaluator.case), evaluator.problem)
 
 
 def runnable(methods: tuple[AbstractControl, ...], known: Known) -> list[AbstractControl]:
@@ -35,7 +35,7 @@ def runnable(methods: tuple[AbstractControl, ...], known: Known) -> list[Abstrac
     return enough
 
 
-def measured(method: AbstractControl, judge: Judge, known: Known) -> tuple[Run, ...]:
+def measured(method: AbstractControl, evaluator: Evaluator, known: Known) -> tuple[Run, ...]:
     """The run of a method in the test period, or that of an earlier call."""
     act = _Act(
         method.name,
@@ -43,15 +43,15 @@ def measured(method: AbstractControl, judge: Judge, known: Known) -> tuple[Run, 
         partial(method.controller, known),
         isinstance(method, AbstractPlanner),
     )
-    return _judged(judge, act, method.seconds_to_fit(known))
+    return _judged(evaluator, act, method.seconds_to_fit(known))
 
 
-def measured_with_true_model(planner: AbstractPlanner, judge: Judge, known: Known) -> tuple[Run, ...]:
+def measured_with_true_model(planner: AbstractPlanner, evaluator: Evaluator, known: Known) -> tuple[Run, ...]:
     """A planner through the thermal model of the simulated home: nobody could, it splits regret."""
     label = f"{planner.name} with the true model"
     mark = fingerprint("true model", _mark(planner, known))
-    act = _Act(label, mark, partial(planner.planned, known, judge.case.home), True)
-    return _judged(judge, act, planner.seconds_to_fit(known))
+    act = _Act(label, mark, partial(planner.planned, known, evaluator.case.home), True)
+    return _judged(evaluator, act, planner.seconds_to_fit(known))
 
 
 @dataclass(frozen=True)
@@ -65,8 +65,8 @@ class _Act:
     """Whether it takes so long that its progress is told."""
 
 
-def _judged(judge: Judge, act: _Act, seconds_to_fit: float | None) -> tuple[Run, ...]:
-    case, progress = judge.case, judge.store.progress
+def _judged(evaluator: Evaluator, act: _Act, seconds_to_fit: float | None) -> tuple[Run, ...]:
+    case, progress = evaluator.case, evaluator.store.progress
 
     def play() -> Sequence[Played]:
         if act.is_told:
@@ -76,7 +76,7 @@ def _judged(judge: Judge, act: _Act, seconds_to_fit: float | None) -> tuple[Run,
             progress.finished(act.label, f"{case.test.slots} plans")
         return [Played(outcome, seconds_to_train=seconds_to_fit)]
 
-    return judge.judged(act.label, act.mark, play)
+    return evaluator.evaluated(act.label, act.mark, play)
 
 
 def _mark(method: AbstractControl, known: Known) -> str:

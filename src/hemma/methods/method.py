@@ -14,7 +14,7 @@ from hemma.optimisation.optimum import OptimumProblem
 from hemma.results.store import Store
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Expert
-from hemma.stages.train import Lesson
+from hemma.stages.train import TrainingJob
 
 Learner = TypeVar("Learner", bound="AbstractLearner")
 
@@ -105,7 +105,7 @@ class AbstractLearner(AbstractMethod):
     """Name of the method that sees the paper's state and has the usual teacher; empty where it is that."""
 
     @abstractmethod
-    def training_job(self, expert: Expert, store: Store) -> Lesson:
+    def training_job(self, expert: Expert, store: Store) -> TrainingJob:
         """What its runs, one a seed, are to learn in the home of ``expert``."""
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""The learned rewards of a lesson, kept beside its controllers."""
+"""The learned rewards of a training job, kept beside its controllers."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def learned_head(training: Training) -> ShapedReward | None:
 
 
 def keep_rewards(training: Training, task: Task, label: str, store: Store) -> list[str]:
-    """Write the learned rewards of a lesson; the name of their file inside the folder, if there are any."""
+    """Write the learned rewards of a training job; the name of their file, if there are any."""
     head = learned_head(training)
     if head is None:
         return []
@@ -30,12 +30,12 @@ def keep_rewards(training: Training, task: Task, label: str, store: Store) -> li
 
 
 def reward_file(label: str, store: Store) -> str:
-    """Name, inside the folder, of the learned rewards of a lesson."""
+    """Name, inside the folder, of the learned rewards of a training job."""
     return store.model(f"{label}.reward.safetensors")
 
 
 def kept_rewards(label: str, store: Store) -> LearnedReward:
-    """The learned rewards of a lesson that was trained."""
+    """The learned rewards of a training job that was trained."""
     path: Path = store.folder / reward_file(label, store)
     if not path.is_file():
         raise HemmaError(

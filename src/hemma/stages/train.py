@@ -26,7 +26,7 @@ SECONDS_BETWEEN_SAVES = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Lesson:
+class TrainingJob:
     """What some runs learn, side by side."""
 
     label: str
@@ -46,7 +46,7 @@ class Lesson:
 
     @property
     def kind(self) -> Hashable:
-        """Lessons of one kind can be trained together: the same algorithm, as many features, as much room."""
+        """Jobs of one kind can be trained together: the same algorithm, as many features, as much room."""
         return self.algorithm, self.task.environment.context.shape[1:]
 
     @property
@@ -64,7 +64,7 @@ class Trained:
     curves: tuple[str, ...]
     """Paths of the learning curves inside the folder."""
     seconds: float
-    """Wall-clock time in which all runs were trained side by side, compilation included; of lessons trained
+    """Wall-clock time in which all runs were trained side by side, compilation included; of jobs trained
     together each has the share of its runs [s]."""
     mark: str
     sight: Sight | None = None
@@ -78,15 +78,15 @@ class Trained:
 
 @dataclass(frozen=True)
 class _Classroom:
-    """A lesson under way."""
+    """A training job under way."""
 
-    lesson: Lesson
+    job: TrainingJob
     store: Store
 
     @property
     def under_way(self) -> Path:
         """Where the state of an unfinished training lies."""
-        return self.store.folder / self.store.model(f"{self.lesson.label}.training.safetensors")
+        return self.store.folder / self.store.model(f"{self.job.label}.training.safetensors")
 
     def train(self) -> tuple[Training, float]:
         """Train to the end, from where an interrupted run stopped; also the seconds it took in total."""
@@ -97,12 +97,12 @@ class _Classroom:
         def on_chunk(now: Training) -> None:
             nonlocal latest
             latest = now
-            self.store.progress.advanced(self.lesson.label, now.iterations, _message(now))
+            self.store.progress.advanced(self.job.label, now.iterations, _message(now))
             if clock.should_save():
                 self._save(now, clock)
 
         try:
-            training = train(self.lesson.task, self.lesson.algorithm, training, on_chunk)
+            training = train(self.job.task, self.job.algorithm, training, on_chunk)
         except KeyboardInterrupt:
             if latest is not None:
                 self._save(latest, clock)
@@ -112,18 +112,18 @@ class _Classroom:
     def _earlier(self) -> tuple[Training | None, float]:
         try:
             header = load_header(self.under_way)
-            if header.get("fingerprint") != self.lesson.mark:
+            if header.get("fingerprint") != self.job.mark:
                 return None, 0.0
-            training = load(self.under_way, self.lesson.task, self.lesson.algorithm)
+            training = load(self.under_way, self.job.task, self.job.algorithm)
         except HemmaError:
             return None, 0.0
         self.store.progress.noticed(
-            f"{self.lesson.label}: going on from iteration {training.iterations} of an interrupted run"
+            f"{self.job.label}: going on from iteration {training.iterations} of an interrupted run"
         )
         return training, header["seconds"]
 
     def _save(self, training: Training, clock: "_Clock") -> None:
-        save(self.under_way, training, {"fingerprint": self.lesson.mark, "seconds": clock.seconds})
+        save(self.under_way, training, {"fingerprint": self.job.mark, "seconds": clock.seconds})
         clock.saved()
 
 
@@ -145,83 +145,83 @@ class _Clock:
         self._saved = time.monotonic()
 
 
-def train_lessons(lessons: Sequence[Lesson], store: Store) -> tuple[Trained, ...]:
-    """The controllers of lessons of one kind: those of earlier calls, and the rest trained together.
+def train_jobs(jobs: Sequence[TrainingJob], store: Store) -> tuple[Trained, ...]:
+    """The controllers of jobs of one kind: those of earlier calls, and the rest trained together.
 
     Together they fill every call of the compiled code. The learning curves are written beside the
     controllers.
     """
-    missing = [lesson for lesson in lessons if store.kept(lesson.label, lesson.mark) is None]
-    for lesson in lessons:
-        if lesson not in missing:
-            store.progress.reused(lesson.label, f"{lesson.runs} runs")
+    missing = [job for job in jobs if store.kept(job.label, job.mark) is None]
+    for job in jobs:
+        if job not in missing:
+            store.progress.reused(job.label, f"{job.runs} runs")
     if missing:
         _train(missing, store)
-    return tuple(_taken(lesson, store) for lesson in lessons)
+    return tuple(_taken(job, store) for job in jobs)
 
 
-def train_all(lessons: Sequence[Lesson], store: Store) -> dict[str, Trained]:
-    """The controllers of each lesson by its label; those of one kind are trained in one call."""
+def train_all(jobs: Sequence[TrainingJob], store: Store) -> dict[str, Trained]:
+    """The controllers of each job by its label; those of one kind are trained in one call."""
     trained: dict[str, Trained] = {}
-    for kind in dict.fromkeys(lesson.kind for lesson in lessons):
-        same = [lesson for lesson in lessons if lesson.kind == kind]
-        trained |= zip([lesson.label for lesson in same], train_lessons(same, store), strict=True)
+    for kind in dict.fromkeys(job.kind for job in jobs):
+        same = [job for job in jobs if job.kind == kind]
+        trained |= zip([job.label for job in same], train_jobs(same, store), strict=True)
     return trained
 
 
-def train_lesson(lesson: Lesson, store: Store) -> Trained:
-    """The controllers of one lesson."""
-    return train_lessons([lesson], store)[0]
+def train_job(job: TrainingJob, store: Store) -> Trained:
+    """The controllers of one job."""
+    return train_jobs([job], store)[0]
 
 
-def _train(lessons: Sequence[Lesson], store: Store) -> None:
-    whole = _together(lessons)
+def _train(jobs: Sequence[TrainingJob], store: Store) -> None:
+    whole = _together(jobs)
     store.progress.started(whole.label, whole.algorithm.iterations)
     classroom = _Classroom(whole, store)
     training, seconds = classroom.train()
-    ends = list(accumulate(lesson.runs for lesson in lessons))
-    for lesson, start, stop in zip(lessons, [0, *ends], ends, strict=False):
+    ends = list(accumulate(job.runs for job in jobs))
+    for job, start, stop in zip(jobs, [0, *ends], ends, strict=False):
         part = jax.tree.map(lambda x, own=slice(start, stop): x[own], training)
-        _keep(lesson, part, seconds * lesson.runs / whole.runs, store)
+        _keep(job, part, seconds * job.runs / whole.runs, store)
     classroom.under_way.unlink(missing_ok=True)
     store.progress.finished(whole.label, f"{whole.runs} runs side by side. {_message(training)}")
 
 
-def _together(lessons: Sequence[Lesson]) -> Lesson:
-    """All runs of the lessons as one lesson."""
-    first = lessons[0]
-    if len(lessons) == 1:
+def _together(jobs: Sequence[TrainingJob]) -> TrainingJob:
+    """All runs of the jobs as one job."""
+    first = jobs[0]
+    if len(jobs) == 1:
         return first
-    task = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *[lesson.task for lesson in lessons])
-    basis = fingerprint("together", [lesson.mark for lesson in lessons])
-    return Lesson(f"{first.label}-and-{len(lessons) - 1}-more", first.algorithm, task, basis)
+    task = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *[job.task for job in jobs])
+    basis = fingerprint("together", [job.mark for job in jobs])
+    return TrainingJob(f"{first.label}-and-{len(jobs) - 1}-more", first.algorithm, task, basis)
 
 
-def _keep(lesson: Lesson, training: Training, seconds: float, store: Store) -> None:
-    curves, file = _curves(lesson, store), store.model(f"{lesson.label}.safetensors")
-    home = jax.tree.map(lambda x: x[0], lesson.task.environment.home)
+def _keep(job: TrainingJob, training: Training, seconds: float, store: Store) -> None:
+    curves, file = _curves(job, store), store.model(f"{job.label}.safetensors")
+    home = jax.tree.map(lambda x: x[0], job.task.environment.home)
     write_curves(store.folder, curves, training.curve, home)
-    made = controllers(training, lesson.task, lesson.algorithm)
-    seen = PAPER.name if lesson.sight is None else lesson.sight.model.name
-    save_tree(store.folder / file, made, {"fingerprint": lesson.mark, "observation_model": seen})
-    rewards = keep_rewards(training, lesson.task, lesson.label, store)
-    store.keep(lesson.label, lesson.mark, [file, *rewards, *curves], {"seconds": seconds})
+    made = controllers(training, job.task, job.algorithm)
+    seen = PAPER.name if job.sight is None else job.sight.model.name
+    save_tree(store.folder / file, made, {"fingerprint": job.mark, "observation_model": seen})
+    rewards = keep_rewards(training, job.task, job.label, store)
+    store.keep(job.label, job.mark, [file, *rewards, *curves], {"seconds": seconds})
 
 
-def _taken(lesson: Lesson, store: Store) -> Trained:
-    content = store.kept(lesson.label, lesson.mark)
+def _taken(job: TrainingJob, store: Store) -> Trained:
+    content = store.kept(job.label, job.mark)
     if content is None:
         raise HemmaError(
-            f"{lesson.label}: expected the controllers just trained in {store.folder}, they are gone or "
+            f"{job.label}: expected the controllers just trained in {store.folder}, they are gone or "
             "changed; let one run at a time use a results folder, and run the same command again"
         )
-    like = blank_controllers(lesson.task, lesson.algorithm)
-    stored = load_tree(store.folder / store.model(f"{lesson.label}.safetensors"), like)
-    return Trained(stored, _curves(lesson, store), content["seconds"], lesson.mark, lesson.sight)
+    like = blank_controllers(job.task, job.algorithm)
+    stored = load_tree(store.folder / store.model(f"{job.label}.safetensors"), like)
+    return Trained(stored, _curves(job, store), content["seconds"], job.mark, job.sight)
 
 
-def _curves(lesson: Lesson, store: Store) -> tuple[str, ...]:
-    return tuple(store.curve(f"{lesson.label}-{run}.csv") for run in range(lesson.runs))
+def _curves(job: TrainingJob, store: Store) -> tuple[str, ...]:
+    return tuple(store.curve(f"{job.label}-{run}.csv") for run in range(job.runs))
 
 
 def _message(training: Training) -> str:

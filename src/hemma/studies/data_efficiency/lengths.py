@@ -7,7 +7,7 @@ from hemma.methods import AIRL, HA_1, HA_2
 from hemma.methods.method import AbstractLearner
 from hemma.results.store import Store
 from hemma.stages.demonstrate import Expert
-from hemma.stages.train import Lesson
+from hemma.stages.train import TrainingJob
 
 USUAL = (HA_1, HA_2)
 """They are points of the figure as well."""
@@ -18,7 +18,7 @@ class OtherLength:
     """The method on demonstrations of another length."""
 
     days: int
-    lesson: Lesson
+    job: TrainingJob
 
 
 def other_lengths(expert: Expert, store: Store, methods: Sequence[AbstractLearner]) -> list[OtherLength]:
@@ -27,11 +27,11 @@ def other_lengths(expert: Expert, store: Store, methods: Sequence[AbstractLearne
     efficiency, days = case.experiment.data_efficiency, case.training_days
     done = {method.seen_days(case.experiment, days) for method in methods if method in USUAL}
     return [
-        OtherLength(length, _lesson(length, expert, store, efficiency.seeds))
+        OtherLength(length, _job(length, expert, store, efficiency.seeds))
         for length in efficiency.days
         if length not in done and length <= days
     ]
 
 
-def _lesson(days: int, expert: Expert, store: Store, seeds: int) -> Lesson:
-    return replace(AIRL, length=days).lesson(expert, store, f"{AIRL.name}-{days}-days", seeds)
+def _job(days: int, expert: Expert, store: Store, seeds: int) -> TrainingJob:
+    return replace(AIRL, length=days).job(expert, store, f"{AIRL.name}-{days}-days", seeds)

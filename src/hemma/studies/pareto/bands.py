@@ -13,7 +13,7 @@ from hemma.results.fingerprint import fingerprint
 from hemma.results.store import Store
 from hemma.rl.task import stack
 from hemma.stages.demonstrate import Expert, demonstration
-from hemma.stages.train import Lesson
+from hemma.stages.train import TrainingJob
 
 LABEL = "HA-1-bands"
 
@@ -22,7 +22,7 @@ LABEL = "HA-1-bands"
 class Bands:
     """HA-1 on the demonstrations of each band's expert, all bands and seeds side by side."""
 
-    lesson: Lesson
+    job: TrainingJob
     """Its runs are sorted by band."""
     limits: tuple[float, ...]
     """The edges that the experts aim at [degC]."""
@@ -60,7 +60,7 @@ def shifted_experts(expert: Expert, relaxations: Sequence[float]) -> tuple[Shift
     return tuple(bands)
 
 
-def bands_lesson(expert: Expert, store: Store, methods: Sequence[AbstractLearner]) -> Bands | None:
+def bands_job(expert: Expert, store: Store, methods: Sequence[AbstractLearner]) -> Bands | None:
     """The experts of all moved bands demonstrate, if any are asked for and HA-1 is among the ``methods``."""
     experiment = expert.case.experiment
     bands = shifted_experts(expert, experiment.pareto.relaxations)
@@ -73,5 +73,5 @@ def bands_lesson(expert: Expert, store: Store, methods: Sequence[AbstractLearner
         for seed in range(experiment.pareto.seeds)
     ]
     basis = fingerprint("bands", [d.mark for d in shown])
-    lesson = Lesson(LABEL, HA_1.algorithm(experiment), stack(tasks), basis)
-    return Bands(lesson, tuple(band.limit for band in bands))
+    job = TrainingJob(LABEL, HA_1.algorithm(experiment), stack(tasks), basis)
+    return Bands(job, tuple(band.limit for band in bands))

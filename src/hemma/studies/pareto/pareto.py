@@ -10,7 +10,7 @@ from hemma.methods.bill import Sweep
 from hemma.results.findings import ParetoPoint
 from hemma.results.records import Run
 from hemma.results.summary import method_runs
-from hemma.stages.judge import Judge
+from hemma.stages.evaluate import Evaluator
 from hemma.stages.play import play
 from hemma.stages.train import Trained
 from hemma.studies.pareto.bands import Bands
@@ -23,14 +23,14 @@ BUDGETS = 9
 class Pareto:
     """Sweeps on one home."""
 
-    judge: Judge
+    evaluator: Evaluator
 
     def frontier(self, largest: float) -> tuple[ParetoPoint, ...]:
         """The proven least cost for total deviations from the least up to ``largest`` [degC].
 
         The budgets are spaced by squares: the frontier is steepest where comfort is nearly kept.
         """
-        problem, slots = self.judge.problem, self.judge.case.test.slots
+        problem, slots = self.evaluator.problem, self.evaluator.case.test.slots
         least = problem.least_deviation
         points = []
         for share in np.linspace(0.0, 1.0, BUDGETS) ** 2:
@@ -49,8 +49,10 @@ class Pareto:
 
     def comfort_prices(self, method: str, sweep: Sweep) -> tuple[ParetoPoint, ...]:
         """A method with each beta_T, trained on the first part of the training period."""
-        lesson, trained = sweep.lesson, sweep.trained
-        runs = self.judge.judged(lesson.label, trained.mark, partial(play, self.judge.case, lesson, trained))
+        job, trained = sweep.job, sweep.trained
+        runs = self.evaluator.evaluated(
+            job.label, trained.mark, partial(play, self.evaluator.case, job, trained)
+        )
         points = []
         for price in dict.fromkeys(sweep.prices):
             same = [run for own, run in zip(sweep.prices, runs, strict=True) if own == price]
@@ -62,8 +64,8 @@ class Pareto:
 
         ``usual`` are the runs of HA-1 itself, whose expert aims at that band.
         """
-        case, lesson = self.judge.case, bands.lesson
-        runs = self.judge.judged(lesson.label, trained.mark, partial(play, case, lesson, trained))
+        case, job = self.evaluator.case, bands.job
+        runs = self.evaluator.evaluated(job.label, trained.mark, partial(play, case, job, trained))
         edge = "lower comfort limit" if case.home.hvac.heats else "upper comfort limit"
         seeds = case.experiment.pareto.seeds
         parts = [runs[i * seeds : (i + 1) * seeds] for i in range(len(bands.limits))]

@@ -10,10 +10,12 @@ from hemma.methods.measured import measured_with_true_model, runnable
 from hemma.methods.method import Known
 from hemma.methods.planners import AbstractPlanner
 from hemma.results.records import MethodRuns, Run
-from hemma.stages.judge import Judge
+from hemma.stages.evaluate import Evaluator
 
 
-def split_regrets(judge: Judge, known: Known, methods: Mapping[str, MethodRuns]) -> dict[str, RegretSplit]:
+def split_regrets(
+    evaluator: Evaluator, known: Known, methods: Mapping[str, MethodRuns]
+) -> dict[str, RegretSplit]:
     """The split of every causal method, of the means over its runs.
 
     A planner is compared with itself on the true building, every other method with the default controller,
@@ -24,7 +26,9 @@ def split_regrets(judge: Judge, known: Known, methods: Mapping[str, MethodRuns])
         for method in runnable(controls(), known)
         if isinstance(method, AbstractPlanner) and method.is_causal
     }
-    truths = {name: _regret(measured_with_true_model(one, judge, known)) for name, one in planners.items()}
+    truths = {
+        name: _regret(measured_with_true_model(one, evaluator, known)) for name, one in planners.items()
+    }
     splits = {}
     for name, found in methods.items():
         method = method_of(name)

@@ -85,5 +85,5 @@ def measure_faults(job: Job, trials: Sequence[Trial]) -> Robustness:
 
 def _trained(case: Case, store: Store) -> Trial:
     expert = Expert(case, identify(case, store))
-    lessons = [method.training_job(expert, store) for method in learned(case.experiment)]
-    return Trial(expert, store, train_all(lessons, store))
+    jobs = [method.training_job(expert, store) for method in learned(case.experiment)]
+    return Trial(expert, store, train_all(jobs, store))

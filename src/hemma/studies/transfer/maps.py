@@ -11,9 +11,9 @@ from hemma.evaluation.reward_maps import (
     outdoor_and_indoor,
     price_and_energy,
 )
-from hemma.studies.transfer.lessons import Origin
 from hemma.studies.transfer.report import write_maps
 from hemma.studies.transfer.reward_figure import BatteryMap, ComfortMap
+from hemma.studies.transfer.training_jobs import Origin
 
 HOURS = (3.0, 9.0, 15.0, 20.0)
 """Hours of the day of the battery's maps."""

@@ -22,27 +22,27 @@ from hemma.results.summary import method_runs
 from hemma.rl.policies.policy import PolicyController
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Expert
+from hemma.stages.evaluate import Evaluator, Played
 from hemma.stages.identify import IdentifiedBuilding, identify
 from hemma.stages.job import at_work, require_long_enough
-from hemma.stages.judge import Judge, Played
 from hemma.stages.rewards import kept_rewards
-from hemma.stages.train import Lesson, Trained, train_lesson, train_lessons
+from hemma.stages.train import Trained, TrainingJob, train_job, train_jobs
 from hemma.studies.transfer.changes import CHANGES, Change, Place, places
 from hemma.studies.transfer.document import Measured, transfer_record
-from hemma.studies.transfer.lessons import (
-    Origin,
-    Settled,
-    adaptation_lessons,
-    airl_lesson,
-    bill_lesson,
-    carried_policies,
-    gail_lesson,
-    ground_lessons,
-    reward_lessons,
-)
 from hemma.studies.transfer.maps import draw_maps
 from hemma.studies.transfer.records import TRANSFER_FILE
 from hemma.studies.transfer.report import write_transfer_report
+from hemma.studies.transfer.training_jobs import (
+    Origin,
+    Settled,
+    adaptation_jobs,
+    airl_job,
+    bill_job,
+    carried_policies,
+    gail_job,
+    ground_jobs,
+    reward_jobs,
+)
 
 ADAPTED, REWARD, GROUND = "adapted by r", "PPO on r", "PPO on g"
 POLICY, GAIL = "policy of AIRL", "policy of GAIL"
@@ -77,16 +77,16 @@ def transfer(job: TransferJob, progress: Progress | None = None) -> dict[str, An
 def _transferred(job: TransferJob, tried: tuple[Place, ...], store: Store) -> dict[str, Any]:
     settled = _settled(tried, store)
     first, *changed = settled
-    own = airl_lesson(first)
-    trained, *anew = train_lessons([own, *map(airl_lesson, changed)], store)
-    gail = train_lesson(gail_lesson(first), store)
+    own = airl_job(first)
+    trained, *anew = train_jobs([own, *map(airl_job, changed)], store)
+    gail = train_job(gail_job(first), store)
     origin = Origin(first, trained, gail, kept_rewards(own.label, store))
     draw_maps(origin, job.folder)
     columns = [*_carried(origin, len(settled)), *_paid(settled, origin, store), _Column(ANEW, (None, *anew))]
-    frozen = reward_lessons(settled, origin)
+    frozen = reward_jobs(settled, origin)
     measured = [
-        Measured(one.place, dict(_measured(_There(one, lesson), columns, number)))
-        for number, (one, lesson) in enumerate(zip(settled, frozen, strict=True))
+        Measured(one.place, dict(_measured(_There(one, training_job), columns, number)))
+        for number, (one, training_job) in enumerate(zip(settled, frozen, strict=True))
     ]
     found = transfer_record(job.command, job.experiment, measured)
     write_record(job.folder / TRANSFER_FILE, found)
@@ -99,11 +99,11 @@ class _There:
     """A place, and what a policy from elsewhere finds there."""
 
     settled: Settled
-    frozen: Lesson
+    frozen: TrainingJob
     """Its task has the home, and the scaler of the unchanged home carried over."""
 
 
-def _as_trained(trained: Trained, _: Lesson) -> PolicyController:
+def _as_trained(trained: Trained, _: TrainingJob) -> PolicyController:
     return trained.controllers
 
 
@@ -114,7 +114,7 @@ class _Column:
     method: str
     trained: tuple[Trained | None, ...]
     """None where it would repeat another."""
-    controllers: Callable[[Trained, Lesson], PolicyController] = _as_trained
+    controllers: Callable[[Trained, TrainingJob], PolicyController] = _as_trained
 
 
 def _carried(origin: Origin, count: int) -> list[_Column]:
@@ -127,25 +127,25 @@ def _carried(origin: Origin, count: int) -> list[_Column]:
 
 def _paid(settled: list[Settled], origin: Origin, store: Store) -> list[_Column]:
     """What is trained in every place on a reward."""
-    lessons = {
-        ADAPTED: adaptation_lessons(settled, origin),
-        REWARD: reward_lessons(settled, origin),
-        GROUND: ground_lessons(settled, origin),
-        BILL: [bill_lesson(one) for one in settled],
+    training_jobs = {
+        ADAPTED: adaptation_jobs(settled, origin),
+        REWARD: reward_jobs(settled, origin),
+        GROUND: ground_jobs(settled, origin),
+        BILL: [bill_job(one) for one in settled],
     }
-    return [_Column(method, train_lessons(made, store)) for method, made in lessons.items()]
+    return [_Column(method, train_jobs(made, store)) for method, made in training_jobs.items()]
 
 
 def _measured(there: _There, columns: Sequence[_Column], number: int) -> Iterator[tuple[str, MethodRuns]]:
     """What each method does in the place of that number."""
-    judge = Judge(there.settled.place.case, there.settled.store)
+    evaluator = Evaluator(there.settled.place.case, there.settled.store)
     for column in columns:
         trained = column.trained[number]
         if trained is not None:
             controllers = column.controllers(trained, there.frozen)
             mark = fingerprint("transfer", there.frozen.mark, trained.mark)
             play = partial(_play, there.settled, controllers, trained.seconds)
-            yield column.method, method_runs(judge.judged(column.method, mark, play))
+            yield column.method, method_runs(evaluator.evaluated(column.method, mark, play))
 
 
 def _play(settled: Settled, controllers: PolicyController, seconds: float) -> list[Played]:

@@ -26,7 +26,7 @@ from hemma.rl.policies.policy import GaussianPolicy, PolicyController
 from hemma.rl.task import Task, explicit_task, make_task, stack
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Demonstration, Expert, demonstration
-from hemma.stages.train import Lesson, Trained
+from hemma.stages.train import Trained, TrainingJob
 from hemma.studies.transfer.changes import Place
 
 COMFORT_MULTIPLE = 4.0
@@ -90,44 +90,46 @@ class Origin:
         return jax.tree.map(lambda x: x[seed], self.trained.controllers.policy)
 
 
-def imitation_lesson(settled: Settled, algorithm: AdversarialImitation, name: str) -> Lesson:
+def imitation_job(settled: Settled, algorithm: AdversarialImitation, name: str) -> TrainingJob:
     """Adversarial imitation of the expert of that place."""
     shown = demonstration(settled.store, settled.expert, settled.experiment.demonstration_days)
     task = stack([_demonstrated(settled, shown, seed) for seed in settled.seeds])
-    return Lesson(f"{settled.label}-{name}", algorithm, task, fingerprint("shown", settled.mark, shown.mark))
+    return TrainingJob(
+        f"{settled.label}-{name}", algorithm, task, fingerprint("shown", settled.mark, shown.mark)
+    )
 
 
-def airl_lesson(settled: Settled) -> Lesson:
+def airl_job(settled: Settled) -> TrainingJob:
     """AIRL from the demonstrations of that place: one agent, so that a run has one reward to carry over."""
     experiment = settled.experiment
-    return imitation_lesson(settled, AdversarialImitation(experiment.airl, Proximal(experiment.ppo)), "AIRL")
+    return imitation_job(settled, AdversarialImitation(experiment.airl, Proximal(experiment.ppo)), "AIRL")
 
 
-def gail_lesson(settled: Settled) -> Lesson:
+def gail_job(settled: Settled) -> TrainingJob:
     """GAIL from the same."""
     experiment = settled.experiment
     gail = AdversarialImitation(experiment.airl, Proximal(experiment.ppo), ImitationScore)
-    return imitation_lesson(settled, gail, "GAIL")
+    return imitation_job(settled, gail, "GAIL")
 
 
-def reward_lessons(settled: Sequence[Settled], origin: Origin) -> list[Lesson]:
+def reward_jobs(settled: Sequence[Settled], origin: Origin) -> list[TrainingJob]:
     """PPO on the whole r in every place."""
-    return [_frozen_lesson(one, origin, _Pay("r", lambda seed: origin.head(seed))) for one in settled]
+    return [_frozen_job(one, origin, _Pay("r", lambda seed: origin.head(seed))) for one in settled]
 
 
-def ground_lessons(settled: Sequence[Settled], origin: Origin) -> list[Lesson]:
+def ground_jobs(settled: Sequence[Settled], origin: Origin) -> list[TrainingJob]:
     """PPO on g alone in every place."""
-    return [_frozen_lesson(one, origin, _Pay("g", lambda seed: ground(origin.head(seed)))) for one in settled]
+    return [_frozen_job(one, origin, _Pay("g", lambda seed: ground(origin.head(seed)))) for one in settled]
 
 
-def adaptation_lessons(settled: Sequence[Settled], origin: Origin) -> list[Lesson]:
+def adaptation_jobs(settled: Sequence[Settled], origin: Origin) -> list[TrainingJob]:
     """PPO on the whole r in every place, from the policy that was learned with it, as cautious as AIRL's."""
     pay = _Pay("adapted", lambda seed: Inheritance(origin.head(seed), origin.policy(seed)))
     experiment = origin.settled.experiment
     settings = ExplicitSettings(experiment.airl.iterations, experiment.airl.exploration, experiment.ppo)
     algorithm = Adaptation(Reoptimisation(ExplicitLearning(settings)))
-    lessons = [_frozen_lesson(one, origin, pay) for one in settled]
-    return [replace(one, algorithm=algorithm) for one in lessons]
+    training_jobs = [_frozen_job(one, origin, pay) for one in settled]
+    return [replace(one, algorithm=algorithm) for one in training_jobs]
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ class _Pay:
     teacher: Callable[[int], FrozenReward]
 
 
-def _frozen_lesson(settled: Settled, origin: Origin, pay: _Pay) -> Lesson:
+def _frozen_job(settled: Settled, origin: Origin, pay: _Pay) -> TrainingJob:
     """PPO as bold as on the bill, on what each run's learned reward pays; its scaler is carried over."""
     battery = origin.settled.place.case.home.battery
 
@@ -149,21 +151,21 @@ def _frozen_lesson(settled: Settled, origin: Origin, pay: _Pay) -> Lesson:
     basis = fingerprint("frozen", settled.mark, origin.trained.mark, pay.name)
     stacked = stack([task(seed) for seed in settled.seeds])
     algorithm = Reoptimisation(ExplicitLearning(settled.experiment.explicit))
-    return Lesson(f"{settled.label}-{pay.name}", algorithm, stacked, basis)
+    return TrainingJob(f"{settled.label}-{pay.name}", algorithm, stacked, basis)
 
 
-def bill_lesson(settled: Settled) -> Lesson:
+def bill_job(settled: Settled) -> TrainingJob:
     """PPO on the explicit reward of that place, which knows its bill: what no imitator is told."""
     case, days = settled.place.case, settled.experiment.demonstration_days
     [price] = comfort_prices(case.home, case.first_days(days), [COMFORT_MULTIPLE])
     task = stack([settled.task(float(price), seed) for seed in settled.seeds])
     basis = fingerprint("bill", settled.mark, float(price))
-    return Lesson(f"{settled.label}-bill", ExplicitLearning(settled.experiment.explicit), task, basis)
+    return TrainingJob(f"{settled.label}-bill", ExplicitLearning(settled.experiment.explicit), task, basis)
 
 
-def carried_policies(trained: Trained, lesson: Lesson) -> PolicyController:
-    """Policies as they were learned elsewhere, in the home and behind the scaler of a frozen lesson."""
-    environment = lesson.task.environment
+def carried_policies(trained: Trained, training_job: TrainingJob) -> PolicyController:
+    """Policies as they were learned elsewhere, in the home and behind the scaler of a frozen training_job."""
+    environment = training_job.task.environment
     return PolicyController(trained.controllers.policy, environment.scaler, environment.planning_home)
 
 

@@ -27,7 +27,7 @@ class Played:
 
 
 @dataclass(frozen=True)
-class Judge:
+class Evaluator:
     """Measures methods on one home; the perfect-information problem is set up once, when first needed."""
 
     case: Case
@@ -38,7 +38,7 @@ class Judge:
         """Perfect information over the test period."""
         return optimum_problem(self.case.home, self.case.test)
 
-    def judged(self, label: str, mark: str, play: Callable[[], Sequence[Played]]) -> tuple[Run, ...]:
+    def evaluated(self, label: str, mark: str, play: Callable[[], Sequence[Played]]) -> tuple[Run, ...]:
         """The runs of ``label``, which depend on ``mark``: measured now, or kept from an earlier run."""
         mark = fingerprint(STAGE, label, CODE, self.case.mark, mark)
         product = f"{_slug(label)}.runs"
@@ -71,20 +71,20 @@ class Judge:
         )
 
 
-def plain_optimum(judge: Judge) -> Optimum:
+def plain_optimum(evaluator: Evaluator) -> Optimum:
     """Perfect information with the least reachable deviation, and its proof."""
-    mark = fingerprint("optimum", CODE, judge.case.mark)
-    content = judge.store.kept("optimum", mark)
+    mark = fingerprint("optimum", CODE, evaluator.case.mark)
+    content = evaluator.store.kept("optimum", mark)
     if content is not None:
         return Optimum.model_validate(content)
-    found = judge.problem.solve()
+    found = evaluator.problem.solve()
     optimum = Optimum(
         energy_cost=found.cost,
-        mean_temperature_deviation=found.deviation / judge.case.test.slots,
+        mean_temperature_deviation=found.deviation / evaluator.case.test.slots,
         bound=found.bound,
         relative_gap=found.gap,
     )
-    judge.store.keep("optimum", mark, [], optimum.model_dump(mode="json"))
+    evaluator.store.keep("optimum", mark, [], optimum.model_dump(mode="json"))
     return optimum
 
 
