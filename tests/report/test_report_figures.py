@@ -1,11 +1,13 @@
 """What is drawn is what was computed, and drawing leaves no trace in the caller's Matplotlib."""
 
+import os
 import subprocess
 import sys
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from synthetic_results import save_results, write_results
 
@@ -18,6 +20,7 @@ from hemma.report.panels_demonstrations import draw_cost_by_length, draw_deviati
 from hemma.report.panels_methods import draw_costs, draw_deviations
 from hemma.report.panels_time import draw_battery_level, draw_indoor_temperature
 from hemma.report.series import SeriesReader
+from hemma.results.records import DemonstrationRuns, Intervals
 from hemma.results.results import HomeResults, load_results
 
 NAMES = (
@@ -140,6 +143,22 @@ def test_panel_d_has_room_for_zero_and_for_the_largest(home):
     assert sorted(drawn) == pytest.approx(sorted(means))
 
 
+def test_no_interval_of_a_deviation_is_drawn_below_zero(home):
+    method = home.methods["GAIL"]
+    wide = Intervals(mean_temperature_deviation=(-0.02, 0.06), total_temperature_deviation=(-15.0, 45.0))
+    entry = method.model_copy(update={"interval": wide})
+    axes = _axes()
+    draw_deviations(axes, home.model_copy(update={"methods": {"GAIL": entry}}))
+    assert [tuple(line.get_xdata()) for line in axes.get_lines() if len(line.get_xdata()) == 2] == [
+        (0.0, 0.06)
+    ]
+    point = DemonstrationRuns(days=7, method="GAIL", **entry.model_dump())
+    axes = _axes()
+    draw_deviation_by_length(axes, home.model_copy(update={"data_efficiency": (point,)}))
+    (whisker,) = [lines for lines in axes.collections if isinstance(lines, LineCollection)]
+    assert [y for _, y in whisker.get_segments()[0]] == [0.0, 45.0]
+
+
 def test_temperatures_stand_at_the_end_of_their_slots(home, series):
     axes = _axes()
     draw_indoor_temperature(axes, home, series.week)
@@ -167,8 +186,18 @@ def test_no_two_methods_look_the_same():
     assert len({(look.colour, look.line) for look in looks}) == len(looks)
 
 
-def test_a_stranger_looks_the_same_every_time():
-    assert look_of("my own") == look_of("my own")
+def test_a_stranger_looks_the_same_in_every_process():
+    code = "from hemma.report.methods import look_of; print([look_of(f'my own {i}') for i in range(9)])"
+    here = [look_of(f"my own {number}") for number in range(9)]
+    other = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONHASHSEED": "7"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert other.stdout.strip() == str(here)
+    assert len(set(here)) > 1
 
 
 @pytest.mark.parametrize("rows", [1, 149, 150, 151, 1800])

@@ -98,6 +98,11 @@ def save(figure: Figure, folder: Path, name: str) -> bytes:
     return svg.getvalue()
 
 
+def literal(text: str) -> str:
+    """The text as it is, for a place where Matplotlib looks for formulas."""
+    return text.replace("$", r"\$")
+
+
 def legend_above(axes: Axes, columns: int) -> None:
     """The legend in rows between title and axes, where it hides no data."""
     handles, labels = axes.get_legend_handles_labels()

@@ -9,6 +9,8 @@ from hemma.report.panels_demonstrations import demonstration_lengths
 from hemma.report.week import Week
 from hemma.results.results import HomeResults
 
+FROM_ZERO = "No deviation is negative: an interval that reaches below zero is drawn from zero."
+
 
 @dataclass(frozen=True)
 class Words:
@@ -86,7 +88,7 @@ def _by_length(home: HomeResults) -> tuple[Words, Words]:
             "(b) Temperature deviation against demonstration length",
             f"Total temperature deviation by days of demonstrations: {deviations or 'no such runs'}.",
             "Sum over all slots of the distance from the comfort band. The axis is linear below 1 °C, "
-            "logarithmic above.",
+            f"logarithmic above. {FROM_ZERO}",
         ),
     )
 
@@ -108,7 +110,7 @@ def _by_method(home: HomeResults) -> tuple[Words, Words]:
             "(d) Mean temperature deviation of each method",
             f"Points of the mean temperature deviation: {deviations}.",
             "Mean over all slots of the distance from the comfort band; 0 is always comfortable. The axis is "
-            "linear below 0.001 °C, logarithmic above.",
+            f"linear below 0.001 °C, logarithmic above. {FROM_ZERO}",
         ),
     )
 

@@ -7,7 +7,7 @@ from hemma.report.numbers import decimals, degrees, money, percent, rough
 from hemma.report.panels_curves import COST, Curves, Spread, spread_of
 from hemma.report.panels_homes import over_homes, shares_by_home
 from hemma.report.panels_improvement import Comparison
-from hemma.report.panels_pareto import FRONTIER, parameter_name, standings, sweeps_of
+from hemma.report.panels_pareto import FRONTIER, standings, sweeps_of
 from hemma.results.results import HomeResults, Results
 
 
@@ -17,7 +17,7 @@ def words_of_pareto(home: HomeResults) -> Words:
         f"{m.name} {money(m.cost, home.currency)} at {degrees(m.deviation)}" for m in standings(home)
     )
     swept = "; ".join(
-        f"{sweep.name}, {parameter_name(point)} {rough(point.value)}: "
+        f"{sweep.name}, {point.parameter.replace('beta_T', 'weight of comfort')} {rough(point.value)}: "
         f"{money(point.energy_cost, home.currency)} at {degrees(point.mean_temperature_deviation)}"
         for sweep in sweeps_of(home)
         for point in sweep.points
@@ -64,7 +64,8 @@ def words_of_improvement(comparison: Comparison, over: str) -> Words:
         "How probably one method beats another",
         f"Probability that a run of the first has the lower regret: {pairs}.",
         f"Over all pairs of runs {over}, ties count half; below it the 95 % interval. One half means that "
-        "nobody can tell which is better; an interval that spans one half leaves it open.",
+        "nobody can tell which is better; the colour is pale where the interval holds one half and leaves it "
+        "open.",
     )
 
 

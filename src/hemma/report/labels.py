@@ -1,8 +1,9 @@
-"""Names beside points, none on another: found by trying places around each point, nearest first."""
+"""Names beside points, none on another and none crossed by the line that leads to another."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -17,8 +18,9 @@ _LEADER = 12.0
 """From this distance [point] on, a thin line leads from the point to its name."""
 _SAME = 9.0
 """Points nearer than this [pixel] share a label."""
-_OVERLAP, _OUTSIDE, _ON_A_LINE = 1000.0, 3000.0, 15.0
-"""What a place costs beside its distance: over another name or point, outside the axes, on a line."""
+_OVERLAP, _OUTSIDE, _ON_A_LINE, _CROSSED, _STRUCK = 1000.0, 3000.0, 7.5, 500.0, 100.0
+"""What a place costs beside its distance: over another name or point, outside the axes, on a line, and for
+every name that a leading line crosses and every point that it strikes."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,7 @@ class Label:
     """A text for a point in data coordinates."""
 
     text: str
+    """Formulas stand between dollar signs; other dollar signs are escaped."""
     x: float
     y: float
     colour: str = INK
@@ -48,20 +51,29 @@ def place_labels(axes: Axes, labels: Sequence[Label], lines: Sequence[Float[np.n
     frame = np.array(axes.get_window_extent().extents)
     labels = _joined(axes, labels)
     points = [axes.transData.transform((label.x, label.y)) for label in labels]
-    occupied: list[Box] = [_around(point, 4.0) for point in points]
+    marks = [_around(point, 4.0) for point in points]
+    names: list[Box] = []
+    leaders: list[Float[np.ndarray, "more 2"]] = []
     traced = [_dense(axes.transData.transform(line)) for line in lines if len(line)]
     track = np.concatenate(traced) if traced else np.zeros((0, 2))
     pixels = figure.dpi / 72
-    for label, point in zip(labels, points, strict=True):
+    for number, (label, point) in enumerate(zip(labels, points, strict=True)):
+        others = marks[:number] + marks[number + 1 :]
         size = _size(axes, label)
         places = [_offset(distance, angle) for distance, angle in product(_DISTANCES, _ANGLES)]
         boxes = [_box(point + pixels * offset, size, offset) for offset in places]
+        lines_to = [_leader(point, offset, pixels) for offset in places]
         costs = [
-            _cost(box, frame, occupied, track) + float(np.hypot(*offset))
-            for box, offset in zip(boxes, places, strict=True)
+            float(np.hypot(*offset))
+            + _cost(box, frame, [*marks, *names], track)
+            + _CROSSED * _crossings(names, leader)
+            + _STRUCK * _crossings(others, leader)
+            + _CROSSED * sum(_crossings([box], other) for other in leaders)
+            for box, offset, leader in zip(boxes, places, lines_to, strict=True)
         ]
         best = int(np.argmin(costs))
-        occupied.append(boxes[best])
+        names.append(boxes[best])
+        leaders.append(lines_to[best])
         _write(axes, label, places[best])
 
 
@@ -80,7 +92,10 @@ def _joined(axes: Axes, labels: Sequence[Label]) -> list[Label]:
             near[0].append(label)
         else:
             groups.append([label])
-    return [replace(group[0], text=_in_lines([label.text for label in group])) for group in groups]
+    return [
+        replace(group[0], text=_in_lines(list(dict.fromkeys(label.text for label in group))))
+        for group in groups
+    ]
 
 
 def _in_lines(texts: list[str]) -> str:
@@ -100,9 +115,30 @@ def _write(axes: Axes, label: Label, offset: Float[np.ndarray, "2"]) -> None:
         fontsize=label.size,
         color=label.colour,
         zorder=6,
-        arrowprops={"arrowstyle": "-", "color": FAINT, "lw": 0.5, "shrinkB": 3.0} if is_far else None,
+        parse_math=True,
+        arrowprops=_line(offset) if is_far else None,
     )
     note.set_in_layout(False)
+
+
+def _line(offset: Float[np.ndarray, "2"]) -> dict[str, Any]:
+    """How the line looks that leads from the point to the near edge of its name."""
+    edge = (0.0, 0.5) if offset[0] >= 0 else (1.0, 0.5)
+    return {"arrowstyle": "-", "color": FAINT, "lw": 0.5, "relpos": edge, "shrinkA": 0.0, "shrinkB": 3.0}
+
+
+def _leader(
+    point: Float[np.ndarray, "2"], offset: Float[np.ndarray, "2"], pixels: float
+) -> Float[np.ndarray, "more 2"]:
+    """Points along the line to a name; none of a name beside its point. ``pixels`` a point has."""
+    if np.hypot(*offset) <= _LEADER:
+        return np.zeros((0, 2))
+    return _dense(np.array([point, point + pixels * offset]))
+
+
+def _crossings(boxes: Sequence[Box], line: Float[np.ndarray, "more 2"]) -> int:
+    """How many of the boxes a line runs through."""
+    return sum(bool(np.any(np.all((line > box[:2]) & (line < box[2:]), axis=1))) for box in boxes)
 
 
 def _offset(distance: float, angle: float) -> Float[np.ndarray, "2"]:
@@ -111,7 +147,7 @@ def _offset(distance: float, angle: float) -> Float[np.ndarray, "2"]:
 
 def _size(axes: Axes, label: Label) -> Float[np.ndarray, "2"]:
     """Width and height of the text [pixel]."""
-    text = axes.text(label.x, label.y, label.text, fontsize=label.size)
+    text = axes.text(label.x, label.y, label.text, fontsize=label.size, parse_math=True)
     extent = text.get_window_extent()
     text.remove()
     return np.array([extent.width, extent.height])
@@ -127,8 +163,8 @@ def _around(point: Float[np.ndarray, "2"], radius: float) -> Box:
 
 
 def _dense(track: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "more 2"]:
-    """Points all along a line, about four pixels apart."""
-    steps = [np.linspace(a, b, 2 + int(np.hypot(*(b - a)) / 4)) for a, b in pairwise(track)]
+    """Points all along a line, about two pixels apart."""
+    steps = [np.linspace(a, b, 2 + int(np.hypot(*(b - a)) / 2)) for a, b in pairwise(track)]
     return np.concatenate(steps) if steps else track
 
 

@@ -9,6 +9,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from hemma.report.canvas import FAINT, legend_above, say_nothing_to_show
 from hemma.report.methods import in_order, look_of
 from hemma.report.numbers import decimals, plain
+from hemma.report.rows import above_zero
 from hemma.results.records import DemonstrationRuns, Intervals, Metrics
 from hemma.results.results import HomeResults
 
@@ -30,7 +31,7 @@ class Quantity:
 TOTAL_DEVIATION = Quantity(
     "Total temperature deviation (°C)",
     lambda metrics: metrics.total_temperature_deviation,
-    lambda intervals: intervals.total_temperature_deviation,
+    lambda intervals: above_zero(intervals.total_temperature_deviation),
 )
 
 

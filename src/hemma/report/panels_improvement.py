@@ -17,6 +17,8 @@ _COLOURS = LinearSegmentedColormap.from_list(
     "better", ["#EDA873", "#FBEDE1", "#FFFFFF", "#E3EFF7", "#74B3DC"]
 )
 """Vermillion for worse, blue for better, both light enough for black numbers."""
+_PALE = 0.25
+"""What is left of the colour where the interval holds one half and nobody can tell which is better."""
 _CELL = 0.72
 """Side [inch] of a cell."""
 
@@ -68,13 +70,20 @@ def _draw_cell(axes: Axes, row: int, column: int, entry: Improvement) -> None:
     """A rectangle and not a pixel of an image: the figure stays sharp and holds no foreign file."""
     chance = entry.probability if entry.probability is not None else 0.5
     axes.add_patch(
-        Rectangle((column - 0.5, row - 0.5), 1, 1, facecolor=_COLOURS(chance), edgecolor="white", lw=1.5)
+        Rectangle((column - 0.5, row - 0.5), 1, 1, facecolor=_colour(entry), edgecolor="white", lw=1.5)
     )
     lift = 0.0 if entry.interval is None else 0.13
     axes.text(column, row - lift, decimals(chance, 2), ha="center", va="center", fontsize=8.5)
     if entry.interval is not None:
         said = f"{decimals(entry.interval[0], 2)}–{decimals(entry.interval[1], 2)}"
         axes.text(column, row + 0.25, said, ha="center", va="center", fontsize=6.2)
+
+
+def _colour(entry: Improvement) -> tuple[float, float, float, float]:
+    """Of the probability; pale where its interval leaves open which of the two is better."""
+    chance = 0.5 if entry.probability is None else entry.probability
+    is_open = entry.interval is not None and entry.interval[0] <= 0.5 <= entry.interval[1]
+    return _COLOURS(0.5 + (_PALE if is_open else 1.0) * (chance - 0.5))
 
 
 def _turned(entry: Improvement) -> Improvement:

@@ -7,6 +7,7 @@ from hemma.report.canvas import GRID, INK, legend_above
 from hemma.report.methods import look_of
 from hemma.report.numbers import DASH, decimals, fine, plain
 from hemma.report.rows import (
+    above_zero,
     draw_interval,
     draw_seeds,
     explain_marks,
@@ -52,7 +53,8 @@ def draw_deviations(axes: Axes, home: HomeResults) -> None:
     largest = LINEAR_BELOW
     for name, place in rows.places.items():
         method, look = home.methods[name], look_of(name)
-        mean, interval = method.mean.mean_temperature_deviation, method.interval.mean_temperature_deviation
+        mean = method.mean.mean_temperature_deviation
+        interval = above_zero(method.interval.mean_temperature_deviation)
         values = draw_seeds(axes, place, [run.mean_temperature_deviation for run in method.runs], look.colour)
         reach = max([0.0, *values, *(interval or ()), mean or 0.0])
         largest = max(largest, reach)

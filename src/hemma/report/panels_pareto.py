@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from hemma.report.canvas import FAINT, INK, new_figure
+from hemma.report.canvas import FAINT, INK, literal, new_figure
 from hemma.report.labels import Label, place_labels
 from hemma.report.methods import in_order, look_of
 from hemma.report.numbers import plain, rough
@@ -43,7 +43,7 @@ class Sweep:
             return "proven least cost for each comfort"
         swept, values = parameter_name(self.points[0]), [p.value for p in self.points if p.value is not None]
         span = f" from {rough(values[0])} to {rough(values[-1])}" if len(values) > 1 else ""
-        return f"{self.name}, {swept}{span}" if swept else self.name
+        return f"{literal(self.name)}, {swept}{span}" if swept else literal(self.name)
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class Standing:
 
 
 def parameter_name(point: ParetoPoint) -> str:
-    """What was swept, as people write it."""
-    return point.parameter.replace("beta_T", "β_T")
+    """What was swept, as a figure writes it: formulas between dollar signs."""
+    return literal(point.parameter).replace("beta_T", r"$\beta_T$")
 
 
 def sweeps_of(home: HomeResults) -> list[Sweep]:
@@ -102,7 +102,8 @@ def pareto_figure(home: HomeResults) -> Figure:
         _limit(axes, (low, top), sweeps, methods)
     panels[0].set_ylabel(f"Energy cost of the test period ({home.currency})")
     handles, words = panels[0].get_legend_handles_labels()
-    figure.legend(handles, words, loc="outside upper left", ncols=2)
+    for text in figure.legend(handles, words, loc="outside upper left", ncols=2).get_texts():
+        text.set_parse_math(True)
     if not is_split:
         _name(panels[0], methods, sweeps, (low, high))
         return figure
@@ -189,5 +190,5 @@ def _name(
         for point in (sweep.points[0], sweep.points[-1])
         if point.value is not None and costs[0] <= (point.energy_cost or 0.0) <= costs[1]
     ]
-    names = [Label(m.name, m.deviation, m.cost, INK) for m in methods]
+    names = [Label(literal(m.name), m.deviation, m.cost, INK) for m in methods]
     place_labels(axes, [*names, *ends], [sweep.track for sweep in sweeps])

@@ -87,6 +87,11 @@ def write_value(axes: Axes, place: float, reach: float, text: str) -> None:
     )
 
 
+def above_zero(interval: tuple[float, float] | None) -> tuple[float, float] | None:
+    """The part of an interval that can be true of what is never negative, for drawing it."""
+    return None if interval is None else (max(0.0, interval[0]), max(0.0, interval[1]))
+
+
 def draw_interval(axes: Axes, place: float, interval: tuple[float, float] | None, colour: str) -> None:
     """A 95 % interval with its two ends."""
     if interval is not None:

@@ -7,6 +7,7 @@ from matplotlib.ticker import PercentFormatter
 from hemma.report.canvas import FAINT, GRID, INK, new_figure
 from hemma.report.methods import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
 from hemma.report.numbers import percent
+from hemma.report.rows import above_zero
 from hemma.results.records import Method
 from hemma.studies.transfer.records import Transfer
 
@@ -71,7 +72,7 @@ def _draw(left: Axes, right: Axes, place: float, method: Method, look: Look) -> 
     elif share is not None:
         _mark(left, place, share, method.interval.share_of_savings, look)
     if deviation is not None:
-        _mark(right, place, deviation, method.interval.mean_temperature_deviation, look)
+        _mark(right, place, deviation, above_zero(method.interval.mean_temperature_deviation), look)
 
 
 def _mark(axes: Axes, place: float, mean: float, interval: tuple[float, float] | None, look: Look) -> None:
