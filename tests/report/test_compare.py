@@ -9,9 +9,9 @@ import pytest
 from synthetic_results import save_results, write_results
 
 from hemma.errors import HemmaError
-from hemma.report.compare import compare
-from hemma.report.comparison_files import comparison_document, write_comparison
-from hemma.report.comparison_page import comparison_page
+from hemma.report.comparison.compare import compare
+from hemma.report.comparison.files import comparison_document, write_comparison
+from hemma.report.comparison.page import comparison_page
 from hemma.results.results import load_results
 
 HOMES = ("home-1", "home-2")

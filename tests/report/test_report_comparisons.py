@@ -8,14 +8,14 @@ from matplotlib.text import Text
 from synthetic_results import save_results, write_results
 
 from hemma.report import write_report
-from hemma.report.canvas import drawing_style, new_figure
-from hemma.report.labels import Label, place_labels
-from hemma.report.overview import differences_of, worst_over_homes
-from hemma.report.panels_homes import homes_figure
-from hemma.report.panels_improvement import comparison_of, improvement_figure
-from hemma.report.panels_pareto import pareto_figure, sweeps_of
-from hemma.report.panels_regret import regret_figure
-from hemma.report.rows import method_rows
+from hemma.report.drawing.canvas import drawing_style, new_figure
+from hemma.report.drawing.labels import Label, place_labels
+from hemma.report.drawing.rows import method_rows
+from hemma.report.figures.panels_homes import homes_figure
+from hemma.report.figures.panels_improvement import comparison_of, improvement_figure
+from hemma.report.figures.panels_pareto import pareto_figure, sweeps_of
+from hemma.report.figures.panels_regret import regret_figure
+from hemma.report.page.overview import differences_of, worst_over_homes
 from hemma.results.findings import Improvement, PairedDifference, ParetoPoint, RegretSplit
 from hemma.results.results import HomeResults, Results, load_results
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from hemma.report.canvas import drawing_style, save
-from hemma.report.panels_curves import COST, DEVIATION, learning_figure, spread_of
-from hemma.report.panels_diagnostics import diagnostics_figure, diagnostics_of
+from hemma.report.drawing.canvas import drawing_style, save
+from hemma.report.figures.panels_curves import COST, DEVIATION, learning_figure, spread_of
+from hemma.report.figures.panels_diagnostics import diagnostics_figure, diagnostics_of
 from hemma.report.series import SeriesReader, TrainingCurve
 from hemma.results.results import load_results
 

@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 from synthetic_results import save_results, write_results
 
 from hemma.report import write_report
-from hemma.report.canvas import drawing_style, new_figure, save
-from hemma.report.figures import HomeSeries, read_series
+from hemma.report.drawing.canvas import drawing_style, new_figure, save
+from hemma.report.figures.panels_curves import thinned
+from hemma.report.figures.panels_demonstrations import draw_cost_by_length, draw_deviation_by_length
+from hemma.report.figures.panels_methods import draw_costs, draw_deviations
+from hemma.report.figures.panels_time import draw_battery_level, draw_indoor_temperature
 from hemma.report.methods import GROUPS, look_of
-from hemma.report.panels_curves import thinned
-from hemma.report.panels_demonstrations import draw_cost_by_length, draw_deviation_by_length
-from hemma.report.panels_methods import draw_costs, draw_deviations
-from hemma.report.panels_time import draw_battery_level, draw_indoor_temperature
+from hemma.report.pictures import HomeSeries, read_series
 from hemma.report.series import SeriesReader
 from hemma.results.records import DemonstrationRuns, Intervals
 from hemma.results.results import HomeResults, load_results

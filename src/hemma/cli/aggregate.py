@@ -12,7 +12,7 @@ def print_aggregate(console: "Console", results: "Results") -> None:
     """A row a method: the mean over homes and seeds; nothing for a single home."""
     from rich.table import Table
 
-    from hemma.report.aggregate_table import AGGREGATE_HEADINGS, aggregate_table
+    from hemma.report.tables.aggregate import AGGREGATE_HEADINGS, aggregate_table
 
     rows = aggregate_table(results)
     if not rows or results.aggregate is None:

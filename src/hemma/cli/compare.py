@@ -11,7 +11,7 @@ from hemma.cli.console import WIDTH, print_json
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hemma.report.comparison import Comparison
+    from hemma.report.comparison.records import Comparison
 
 Folders = Annotated[
     list[Path],
@@ -31,8 +31,8 @@ def register(app: typer.Typer) -> None:
 
 def compare(folders: Folders, out: File = None, json: Json = False) -> None:
     """Set results folders side by side: costs, shares, comfort, and what differs in settings and data."""
-    from hemma.report.compare import compare as compare_folders
-    from hemma.report.comparison_files import comparison_document, write_comparison
+    from hemma.report.comparison.compare import compare as compare_folders
+    from hemma.report.comparison.files import comparison_document, write_comparison
 
     comparison = compare_folders(folders)
     if out is not None:
@@ -48,7 +48,7 @@ def compare(folders: Folders, out: File = None, json: Json = False) -> None:
 def _print_comparison(comparison: "Comparison") -> None:
     from rich.console import Console
 
-    from hemma.report.comparison_table import READING, legend
+    from hemma.report.comparison.table import READING, legend
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH, highlight=False)
     for line in legend(comparison):
@@ -65,7 +65,7 @@ def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from hemma.report.comparison_table import disagreement_rows, letter
+    from hemma.report.comparison.table import disagreement_rows, letter
 
     rows = disagreement_rows(comparison)
     if not rows:
@@ -79,7 +79,7 @@ def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
 
 
 def _print_methods(console: "Console", comparison: "Comparison") -> None:
-    from hemma.report.comparison_table import METHOD_HEADINGS, home_rows
+    from hemma.report.comparison.table import METHOD_HEADINGS, home_rows
 
     for home in comparison.homes:
         _print_rows(console, home.home, METHOD_HEADINGS, list(home_rows(home)))
@@ -88,7 +88,7 @@ def _print_methods(console: "Console", comparison: "Comparison") -> None:
 
 
 def _print_over_homes(console: "Console", comparison: "Comparison") -> None:
-    from hemma.report.comparison_table import OVER_HOMES_HEADINGS, over_homes_rows
+    from hemma.report.comparison.table import OVER_HOMES_HEADINGS, over_homes_rows
 
     if comparison.over_homes:
         title = "Mean over the homes that both folders share; the interval is about other homes"

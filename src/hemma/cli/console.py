@@ -101,7 +101,7 @@ def print_recommendations(content: Any) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hemma.report.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
+    from hemma.report.tables.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
     from hemma.results.results import HomeResults
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH)

@@ -5,7 +5,7 @@ from jaxtyping import Float
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from hemma.report.canvas import INK, new_figure
+from hemma.report.drawing.canvas import INK, new_figure
 from hemma.report.numbers import DASH, decimals
 
 LOWEST = 0.0

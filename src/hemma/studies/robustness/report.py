@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from hemma.checkpoint import write_atomically
-from hemma.report.canvas import drawing_style, save
+from hemma.report.drawing.canvas import drawing_style, save
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, decimals, fine, percent
 from hemma.studies.robustness.figure import robustness_figure

@@ -4,10 +4,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
-from hemma.report.canvas import FAINT, GRID, INK, new_figure
+from hemma.report.drawing.canvas import FAINT, GRID, INK, new_figure
+from hemma.report.drawing.rows import above_zero
 from hemma.report.methods import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
 from hemma.report.numbers import percent
-from hemma.report.rows import above_zero
 from hemma.results.records import Method
 from hemma.studies.transfer.records import Transfer
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.patches import Patch
 
 from hemma.evaluation.reward_maps import FRACTIONS, Answers, Grid, preferred
-from hemma.report.canvas import GRID, INK, new_figure
+from hemma.report.drawing.canvas import GRID, INK, new_figure
 from hemma.report.methods import BLUE, ORANGE
 from hemma.report.numbers import plain
 

@@ -1,0 +1,80 @@
+"""The records of a comparison of several results folders."""
+
+from dataclasses import dataclass
+
+from hemma.evaluation import Improvement, Summary
+from hemma.report.comparison.disagreements import Disagreement
+from hemma.results.records import Intervals, Metrics
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A method in one folder less the same method in the first folder; means over the runs."""
+
+    share_of_savings: float | None
+    gap_to_optimum: float | None
+    energy_cost: float | None = None
+    """[currency]; this and all below are None where only ratios can be compared."""
+    mean_temperature_deviation: float | None = None
+    """[degC]."""
+    improvement: Improvement | None = None
+    """How probably a run of this folder has a lower regret than one of the first."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A method on a home, in one folder."""
+
+    runs: int
+    mean: Metrics
+    interval: Intervals
+    difference: Difference | None
+    """None in the first folder, and where that lacks the method."""
+
+
+@dataclass(frozen=True)
+class ComparedMethod:
+    """A method on a home, in all folders."""
+
+    method: str
+    found: tuple[Measured | None, ...]
+    """One a folder; None where a folder lacks the method."""
+
+
+@dataclass(frozen=True)
+class ComparedHome:
+    """A home that the first folder shares with another."""
+
+    home: str
+    currencies: tuple[str | None, ...]
+    """One a folder; None where a folder lacks the home."""
+    methods: tuple[ComparedMethod, ...]
+    notes: tuple[str, ...]
+    """Between which folders only ratios can be compared, and why."""
+
+
+@dataclass(frozen=True)
+class OverHomes:
+    """A method in one folder against the same method in the first, over the homes that both measured."""
+
+    method: str
+    folder: str
+    homes: tuple[str, ...]
+    share_of_savings: Summary
+    """Of the differences home by home; the interval is about other homes and seeds."""
+    improvement: Improvement | None
+    """The mean over the homes; None where they were not measured on the same data."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Everything that is said of several folders."""
+
+    folders: tuple[str, ...]
+    """The first is the one that the others are compared with."""
+    disagreements: tuple[Disagreement, ...]
+    homes: tuple[ComparedHome, ...]
+    over_homes: tuple[OverHomes, ...]
+    """Empty unless two homes or more are shared."""
+    notes: tuple[str, ...]
+    """Homes that some folders lack."""

@@ -1,0 +1,179 @@
+"""Names beside points, none on another and none crossed by the line that leads to another."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise, product
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.axes import Axes
+
+from hemma.report.drawing.canvas import FAINT, INK
+
+_DISTANCES = (7.0, 11.0, 17.0, 25.0, 35.0, 47.0, 61.0, 77.0)
+_ANGLES = tuple(np.pi / 8 * turn for turn in (0, 1, 15, 2, 14, 6, 10, 7, 9, 8, 4, 12, 3, 5, 11, 13))
+"""To the right first, above and below last."""
+_LEADER = 12.0
+"""From this distance [point] on, a thin line leads from the point to its name."""
+_SAME = 9.0
+"""Points nearer than this [pixel] share a label."""
+_OVERLAP, _OUTSIDE, _ON_A_LINE, _CROSSED, _STRUCK = 1000.0, 3000.0, 7.5, 500.0, 100.0
+"""What a place costs beside its distance: over another name or point, outside the axes, on a line, and for
+every name that a leading line crosses and every point that it strikes."""
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text for a point in data coordinates."""
+
+    text: str
+    """Formulas stand between dollar signs; other dollar signs are escaped."""
+    x: float
+    y: float
+    colour: str = INK
+    size: float = 8.0
+
+
+Box = Float[np.ndarray, "4"]
+"""Left, bottom, right, top [pixel]."""
+
+
+def place_labels(axes: Axes, labels: Sequence[Label], lines: Sequence[Float[np.ndarray, "_ 2"]]) -> None:
+    """Write the labels; ``lines`` are curves in data coordinates that are better left free.
+
+    The limits of the axes must be final. Deterministic: a label takes the cheapest place that the ones
+    before it left.
+    """
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()
+    frame = np.array(axes.get_window_extent().extents)
+    labels = _joined(axes, labels)
+    points = [axes.transData.transform((label.x, label.y)) for label in labels]
+    marks = [_around(point, 4.0) for point in points]
+    names: list[Box] = []
+    leaders: list[Float[np.ndarray, "more 2"]] = []
+    traced = [_dense(axes.transData.transform(line)) for line in lines if len(line)]
+    track = np.concatenate(traced) if traced else np.zeros((0, 2))
+    pixels = figure.dpi / 72
+    for number, (label, point) in enumerate(zip(labels, points, strict=True)):
+        others = marks[:number] + marks[number + 1 :]
+        size = _size(axes, label)
+        places = [_offset(distance, angle) for distance, angle in product(_DISTANCES, _ANGLES)]
+        boxes = [_box(point + pixels * offset, size, offset) for offset in places]
+        lines_to = [_leader(point, offset, pixels) for offset in places]
+        costs = [
+            float(np.hypot(*offset))
+            + _cost(box, frame, [*marks, *names], track)
+            + _CROSSED * _crossings(names, leader)
+            + _STRUCK * _crossings(others, leader)
+            + _CROSSED * sum(_crossings([box], other) for other in leaders)
+            for box, offset, leader in zip(boxes, places, lines_to, strict=True)
+        ]
+        best = int(np.argmin(costs))
+        names.append(boxes[best])
+        leaders.append(lines_to[best])
+        _write(axes, label, places[best])
+
+
+def _joined(axes: Axes, labels: Sequence[Label]) -> list[Label]:
+    """One label for points that lie on each other, three names a line; the first point carries it."""
+    groups: list[list[Label]] = []
+    for label in labels:
+        here = axes.transData.transform((label.x, label.y))
+        near = [
+            group
+            for group in groups
+            if group[0].size == label.size
+            and np.hypot(*(axes.transData.transform((group[0].x, group[0].y)) - here)) < _SAME
+        ]
+        if near:
+            near[0].append(label)
+        else:
+            groups.append([label])
+    return [
+        replace(group[0], text=_in_lines(list(dict.fromkeys(label.text for label in group))))
+        for group in groups
+    ]
+
+
+def _in_lines(texts: list[str]) -> str:
+    lines = [", ".join(texts[first : first + 3]) for first in range(0, len(texts), 3)]
+    return ",\n".join(lines)
+
+
+def _write(axes: Axes, label: Label, offset: Float[np.ndarray, "2"]) -> None:
+    is_far = float(np.hypot(*offset)) > _LEADER
+    note = axes.annotate(
+        label.text,
+        (label.x, label.y),
+        xytext=tuple(offset),
+        textcoords="offset points",
+        ha="left" if offset[0] >= 0 else "right",
+        va="center",
+        fontsize=label.size,
+        color=label.colour,
+        zorder=6,
+        parse_math=True,
+        arrowprops=_line(offset) if is_far else None,
+    )
+    note.set_in_layout(False)
+
+
+def _line(offset: Float[np.ndarray, "2"]) -> dict[str, Any]:
+    """How the line looks that leads from the point to the near edge of its name."""
+    edge = (0.0, 0.5) if offset[0] >= 0 else (1.0, 0.5)
+    return {"arrowstyle": "-", "color": FAINT, "lw": 0.5, "relpos": edge, "shrinkA": 0.0, "shrinkB": 3.0}
+
+
+def _leader(
+    point: Float[np.ndarray, "2"], offset: Float[np.ndarray, "2"], pixels: float
+) -> Float[np.ndarray, "more 2"]:
+    """Points along the line to a name; none of a name beside its point. ``pixels`` a point has."""
+    if np.hypot(*offset) <= _LEADER:
+        return np.zeros((0, 2))
+    return _dense(np.array([point, point + pixels * offset]))
+
+
+def _crossings(boxes: Sequence[Box], line: Float[np.ndarray, "more 2"]) -> int:
+    """How many of the boxes a line runs through."""
+    return sum(bool(np.any(np.all((line > box[:2]) & (line < box[2:]), axis=1))) for box in boxes)
+
+
+def _offset(distance: float, angle: float) -> Float[np.ndarray, "2"]:
+    return np.array([distance * np.cos(angle), distance * np.sin(angle)])
+
+
+def _size(axes: Axes, label: Label) -> Float[np.ndarray, "2"]:
+    """Width and height of the text [pixel]."""
+    text = axes.text(label.x, label.y, label.text, fontsize=label.size, parse_math=True)
+    extent = text.get_window_extent()
+    text.remove()
+    return np.array([extent.width, extent.height])
+
+
+def _box(anchor: Float[np.ndarray, "2"], size: Float[np.ndarray, "2"], offset: Float[np.ndarray, "2"]) -> Box:
+    left = anchor[0] if offset[0] >= 0 else anchor[0] - size[0]
+    return np.array([left - 1, anchor[1] - size[1] / 2, left + size[0] + 1, anchor[1] + size[1] / 2])
+
+
+def _around(point: Float[np.ndarray, "2"], radius: float) -> Box:
+    return np.array([*(point - radius), *(point + radius)])
+
+
+def _dense(track: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "more 2"]:
+    """Points all along a line, about two pixels apart."""
+    steps = [np.linspace(a, b, 2 + int(np.hypot(*(b - a)) / 2)) for a, b in pairwise(track)]
+    return np.concatenate(steps) if steps else track
+
+
+def _cost(box: Box, frame: Box, occupied: list[Box], track: Float[np.ndarray, "points 2"]) -> float:
+    others = np.array(occupied)
+    wide = np.minimum(box[2], others[:, 2]) - np.maximum(box[0], others[:, 0])
+    tall = np.minimum(box[3], others[:, 3]) - np.maximum(box[1], others[:, 1])
+    overlaps = int(np.sum((wide > 0) & (tall > 0)))
+    is_outside = box[0] < frame[0] or box[1] < frame[1] or box[2] > frame[2] or box[3] > frame[3]
+    inside = (track >= box[:2]) & (track <= box[2:])
+    crossed = int(np.sum(np.all(inside, axis=1)))
+    return _OVERLAP * overlaps + _OUTSIDE * is_outside + _ON_A_LINE * crossed
