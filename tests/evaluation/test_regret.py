@@ -1,7 +1,5 @@
 """Where the distance to perfect information comes from: three parts that add up."""
 
-from dataclasses import astuple
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,6 +9,10 @@ from hemma.errors import HemmaError
 from hemma.evaluation.regret import RegretSplit, regret, split_regret
 
 REGRET = st.floats(-1e4, 1e6)
+
+
+def numbers(split):
+    return [split.total, *split.parts]
 
 
 def test_regret_is_a_difference_so_that_an_optimum_near_zero_is_no_trouble():
@@ -36,7 +38,7 @@ def test_a_controller_better_than_the_planner_has_a_negative_part_of_the_policy(
 
 
 def test_perfect_information_through_the_true_model_loses_nothing():
-    assert astuple(split_regret(0.0, 0.0, 0.0)) == (0.0, 0.0, 0.0, 0.0)
+    assert numbers(split_regret(0.0, 0.0, 0.0)) == [0.0, 0.0, 0.0, 0.0]
 
 
 @given(REGRET, REGRET, REGRET)
@@ -50,8 +52,8 @@ def test_the_parts_add_up_to_the_total(controller, planner, true_model):
 @given(st.lists(st.tuples(REGRET, REGRET, REGRET), min_size=1, max_size=5))
 def test_the_split_of_the_means_is_the_mean_of_the_splits(regrets):
     together = split_regret(*(float(mean) for mean in np.mean(regrets, axis=0)))
-    separate = np.mean([astuple(split_regret(*three)) for three in regrets], axis=0)
-    np.testing.assert_allclose(astuple(together), separate, rtol=1e-9, atol=1e-9 * np.abs(regrets).max())
+    separate = np.mean([numbers(split_regret(*three)) for three in regrets], axis=0)
+    np.testing.assert_allclose(numbers(together), separate, rtol=1e-9, atol=1e-9 * np.abs(regrets).max())
 
 
 @pytest.mark.parametrize("wrong", [float("nan"), float("inf")])
@@ -59,10 +61,5 @@ def test_the_split_of_the_means_is_the_mean_of_the_splits(regrets):
 def test_a_missing_regret_is_refused(position, wrong):
     regrets = [3.0, 2.0, 1.0]
     regrets[position] = wrong
-    with pytest.raises(HemmaError, match=r"finite parts, got .*measure the runs that are missing"):
+    with pytest.raises(HemmaError, match=r"finite regrets, got (nan|inf) of the .*; measure it again"):
         split_regret(*regrets)
-
-
-def test_parts_that_do_not_add_up_are_refused():
-    with pytest.raises(HemmaError, match="add up to the total 5, got 6"):
-        RegretSplit(total=5.0, future=1.0, thermal_model=2.0, policy=3.0)

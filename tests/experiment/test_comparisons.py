@@ -6,10 +6,27 @@ import math
 import pytest
 
 from hemma.evaluation import summarise
-from hemma.results.comparisons import aggregate, improvements
+from hemma.results import comparisons
+from hemma.results.reading import json_content
+from hemma.results.results import HomeResults
 
 T_2_DEGREES = 4.302653
 """t_{0.975} with 2 degrees of freedom."""
+
+
+def record(home):
+    period = {"start": "2021-08-01T00:00:00-06:00", "slots": 24}
+    said = {"currency": "$", "slot_length_h": 1.0, "comfort_c": [19.0, 24.0], "test": period}
+    return HomeResults.model_validate({**said, **home})
+
+
+def aggregate(entries):
+    found = comparisons.aggregate({name: record(home) for name, home in entries.items()})
+    return None if found is None else json_content(found)
+
+
+def improvements(entries):
+    return [json_content(found) for found in comparisons.improvements([record(home) for home in entries])]
 
 
 def method(shares, seeds=True):
@@ -24,7 +41,7 @@ def method(shares, seeds=True):
         }
         for seed, share in enumerate(shares)
     ]
-    return {"runs": runs}
+    return {"runs": runs, "mean": {}}
 
 
 def homes():

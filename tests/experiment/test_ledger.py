@@ -2,36 +2,67 @@
 
 import json
 import math
-from dataclasses import replace
 
 import pytest
 
-from hemma.evaluation import Metrics
-from hemma.results.document import home_document
-from hemma.results.found import Head, HomeResults, MethodRegret, MethodResults, ParetoPoint, Period, Run
+from hemma.evaluation import RegretSplit
+from hemma.results.findings import ParetoPoint
 from hemma.results.ledger import is_part_of, open_ledger
 from hemma.results.progress import Silence
+from hemma.results.reading import json_content
+from hemma.results.records import DemonstrationRuns, Period, Run
+from hemma.results.results import HomeResults
+from hemma.results.summary import method_runs
 
 
 def run(seed=None, cost=1.0, schedule="schedules/a/Rule.csv", curve=None):
-    return Run(seed, Metrics(cost, cost, 0.0, 0.1, 2.4, math.nan, None, cost - 0.5, None), schedule, curve)
-
-
-def home(name="a", methods=(), data_efficiency=()):
-    period = Period("2021-08-01T00:00:00-06:00", 24)
-    return HomeResults(
-        name,
-        "made up",
-        "$",
-        (),
-        "00",
-        1.0,
-        period,
-        period,
-        (19.0, 24.0),
-        methods=methods,
-        data_efficiency=data_efficiency,
+    return Run(
+        seed=seed,
+        energy_cost=cost,
+        transaction_cost=cost,
+        battery_cost=0.0,
+        mean_temperature_deviation=0.1,
+        total_temperature_deviation=2.4,
+        gap_to_optimum=math.nan,
+        regret=cost - 0.5,
+        schedule=schedule,
+        curve=curve,
     )
+
+
+def home(methods=None, **found):
+    period = Period(start="2021-08-01T00:00:00-06:00", slots=24)
+    return HomeResults(
+        source="made up",
+        currency="$",
+        traces_sha256="00",
+        slot_length_h=1.0,
+        training=period,
+        test=period,
+        comfort_c=(19.0, 24.0),
+        methods={name: method_runs(runs) for name, runs in (methods or {}).items()},
+        **found,
+    )
+
+
+def length(days, cost=None):
+    runs = (run(0, float(days) if cost is None else cost),)
+    return DemonstrationRuns(**dict(method_runs(runs)), days=days, method="AIRL")
+
+
+def point(deviation=0.0):
+    return ParetoPoint(
+        series="PPO",
+        parameter="beta_T",
+        value=0.1,
+        energy_cost=30.0,
+        mean_temperature_deviation=deviation,
+        schedules=("schedules/a/PPO-sweep-0.csv",),
+    )
+
+
+def ledger_of(folder, settings=None, progress=None):
+    return open_ledger(folder, "hemma", settings or {}, progress or Silence())
 
 
 class Notices(Silence):
@@ -47,8 +78,8 @@ def content(folder):
 
 
 def test_what_is_undefined_is_null_and_never_nan(tmp_path):
-    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
-    ledger.put(home(methods=(MethodResults("Rule", (run(),)),)))
+    ledger = ledger_of(tmp_path)
+    ledger.put("a", home({"Rule": [run()]}))
     assert "NaN" not in (tmp_path / "results.json").read_text()
     rule = content(tmp_path)["homes"]["a"]["methods"]["Rule"]
     assert rule["runs"][0]["gap_to_optimum"] is None
@@ -58,7 +89,7 @@ def test_what_is_undefined_is_null_and_never_nan(tmp_path):
 
 def test_mean_and_interval_over_seeds():
     runs = tuple(run(seed, cost) for seed, cost in enumerate([1.0, 2.0, 3.0]))
-    rule = home_document(home(methods=(MethodResults("HA-1", runs, days=15),)))["methods"]["HA-1"]
+    rule = json_content(method_runs(runs))
     assert rule["mean"]["energy_cost"] == 2.0
     low, high = rule["interval"]["energy_cost"]
     assert (low + high) / 2 == pytest.approx(2.0)
@@ -67,30 +98,30 @@ def test_mean_and_interval_over_seeds():
 
 
 def test_the_same_settings_keep_other_homes(tmp_path):
-    open_ledger(tmp_path, Head("hemma", {"seeds": 1}), Silence()).put(home("a"))
-    ledger = open_ledger(tmp_path, Head("hemma again", {"seeds": 1}), Silence())
-    ledger.put(home("b"))
+    ledger_of(tmp_path, {"seeds": 1}).put("a", home())
+    ledger = ledger_of(tmp_path, {"seeds": 1})
+    ledger.put("b", home())
     assert set(content(tmp_path)["homes"]) == {"a", "b"}
 
 
 def test_other_settings_replace_everything_and_say_so(tmp_path):
-    open_ledger(tmp_path, Head("hemma", {"seeds": 1}), Silence()).put(home("a"))
+    ledger_of(tmp_path, {"seeds": 1}).put("a", home())
     notices = Notices()
-    ledger = open_ledger(tmp_path, Head("hemma", {"seeds": 2}), notices)
-    ledger.put(home("b"))
+    ledger = ledger_of(tmp_path, {"seeds": 2}, progress=notices)
+    ledger.put("b", home())
     assert set(content(tmp_path)["homes"]) == {"b"}
     assert len(notices.messages) == 1
     assert "replaced" in notices.messages[0]
 
 
 def test_going_on_never_makes_the_file_poorer(tmp_path):
-    full = home(methods=(MethodResults("Rule", (run(),)),))
-    open_ledger(tmp_path, Head("hemma", {}), Silence()).put(full)
+    full = home({"Rule": [run()]})
+    ledger_of(tmp_path).put("a", full)
     before = (tmp_path / "results.json").read_bytes()
-    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
-    ledger.put(home())
+    ledger = ledger_of(tmp_path)
+    ledger.put("a", home())
     assert (tmp_path / "results.json").read_bytes() == before
-    ledger.put(home(methods=(MethodResults("Rule", (run(cost=5.0),)),)))
+    ledger.put("a", home({"Rule": [run(cost=5.0)]}))
     assert content(tmp_path)["homes"]["a"]["methods"]["Rule"]["mean"]["energy_cost"] == 5.0
 
 
@@ -104,11 +135,9 @@ def test_only_files_that_the_old_results_named_are_taken_away(tmp_path):
     (folder / "notes.txt").write_text("mine\n")
     old = (run(0, 1.0, "schedules/a/old.csv"), run(1, 1.0, "schedules/a/kept.csv"))
     foreign = (run(2, 1.0, "../outside.csv"), run(3, 1.0, "notes.txt"))
-    open_ledger(folder, Head("hemma", {"x": 1}), Silence()).put(
-        home(methods=(MethodResults("M", (*old, *foreign)),))
-    )
-    ledger = open_ledger(folder, Head("hemma", {"x": 2}), Silence())
-    ledger.put(home(methods=(MethodResults("M", (run(1, 1.0, "schedules/a/kept.csv"),)),)))
+    ledger_of(folder, {"x": 1}).put("a", home({"M": [*old, *foreign]}))
+    ledger = ledger_of(folder, {"x": 2})
+    ledger.put("a", home({"M": [run(1, 1.0, "schedules/a/kept.csv")]}))
     ledger.close()
     assert sorted(path.name for path in schedules.iterdir()) == ["kept.csv", "mine.csv"]
     assert (tmp_path / "outside.csv").exists()
@@ -119,61 +148,58 @@ def test_schedules_of_a_sweep_are_taken_away_with_it(tmp_path):
     file = tmp_path / "schedules" / "a" / "PPO-sweep-0.csv"
     file.parent.mkdir(parents=True)
     file.write_text("time\n")
-    point = ParetoPoint("PPO", "beta_T", 0.1, 30.0, 0.0, 1, ("schedules/a/PPO-sweep-0.csv",))
-    open_ledger(tmp_path, Head("hemma", {"x": 1}), Silence()).put(replace(home(), pareto=(point,)))
-    ledger = open_ledger(tmp_path, Head("hemma", {"x": 1}), Silence())
-    ledger.put(replace(home(), pareto=(point,)))
+    ledger_of(tmp_path, {"x": 1}).put("a", home(pareto=(point(),)))
+    ledger = ledger_of(tmp_path, {"x": 1})
+    ledger.put("a", home(pareto=(point(),)))
     ledger.close()
     assert file.exists()
-    ledger = open_ledger(tmp_path, Head("hemma", {"x": 2}), Silence())
-    ledger.put(home())
+    ledger = ledger_of(tmp_path, {"x": 2})
+    ledger.put("a", home())
     ledger.close()
     assert not file.exists()
 
 
-@pytest.mark.parametrize("broken", ["", "{", "[]", '{"homes": 3}', '{"homes": []}'])
+@pytest.mark.parametrize("broken", ["", "{", "[]", '{"homes": 3}', '{"homes": []}', "[" * 100_000])
 def test_a_broken_results_file_does_not_stop_a_new_run(tmp_path, broken):
     (tmp_path / "results.json").write_text(broken)
-    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
-    ledger.put(home())
+    ledger = ledger_of(tmp_path)
+    ledger.put("a", home())
     assert set(content(tmp_path)["homes"]) == {"a"}
 
 
 def test_a_shorter_list_of_records_does_not_replace_a_longer_one(tmp_path):
     """A repeated run finds one length of demonstrations after the other; the file keeps them all."""
-    lengths = tuple(MethodResults("AIRL", (run(0, float(days)),), days=days) for days in (3, 7, 15))
-    open_ledger(tmp_path, Head("hemma", {}), Silence()).put(home(data_efficiency=lengths))
+    lengths = tuple(length(days) for days in (3, 7, 15))
+    ledger_of(tmp_path).put("a", home(data_efficiency=lengths))
     before = (tmp_path / "results.json").read_bytes()
-    ledger = open_ledger(tmp_path, Head("hemma", {}), Silence())
-    ledger.put(home(data_efficiency=lengths[:2]))
+    ledger = ledger_of(tmp_path)
+    ledger.put("a", home(data_efficiency=lengths[:2]))
     assert (tmp_path / "results.json").read_bytes() == before
-    ledger.put(home(data_efficiency=(replace(lengths[0], runs=(run(0, 99.0),)),)))
+    ledger.put("a", home(data_efficiency=(length(3, 99.0),)))
     [only] = content(tmp_path)["homes"]["a"]["data_efficiency"]
     assert only["mean"]["energy_cost"] == 99.0
 
 
 def test_what_follows_from_the_runs_is_computed_anew_when_the_file_is_written(tmp_path):
     """Homes of an earlier run join the comparisons; a repeated run changes nothing."""
-    head = Head("hemma", {})
-    methods = (MethodResults("HA-1", (run(0, 1.0), run(1, 2.0))), MethodResults("Rule", (run(None, 3.0),)))
-    open_ledger(tmp_path, head, Silence()).put(home("a", methods))
-    assert "aggregate" not in content(tmp_path)
-    open_ledger(tmp_path, head, Silence()).put(home("b", methods))
+    methods = {"HA-1": [run(0, 1.0), run(1, 2.0)], "Rule": [run(None, 3.0)]}
+    ledger_of(tmp_path).put("a", home(methods))
+    assert content(tmp_path)["aggregate"] is None
+    ledger_of(tmp_path).put("b", home(methods))
     written = content(tmp_path)
     assert written["aggregate"]["homes"] == ["a", "b"]
     assert set(written["aggregate"]["methods"]) == {"HA-1", "Rule"}
     [pair] = written["homes"]["a"]["probability_of_improvement"]
     assert (pair["method"], pair["over"], pair["probability"]) == ("HA-1", "Rule", 1.0)
-    ledger = open_ledger(tmp_path, head, Silence())
-    ledger.put(home("a"))
+    ledger = ledger_of(tmp_path)
+    ledger.put("a", home())
     ledger.close()
-    assert content(tmp_path) == written == json.loads(json.dumps(ledger.content))
+    assert content(tmp_path) == written == json.loads(json.dumps(json_content(ledger.results)))
 
 
 def test_statistics_of_the_runs_of_a_method():
     runs = tuple(run(seed, cost) for seed, cost in enumerate([4.0, 100.0, 2.0, -50.0]))
-    entry = home_document(home(methods=(MethodResults("HA-1", runs), MethodResults("Rule", (run(),)))))
-    learned, rule = entry["methods"]["HA-1"], entry["methods"]["Rule"]
+    learned, rule = json_content(method_runs(runs)), json_content(method_runs([run()]))
     assert learned["interquartile_mean"]["energy_cost"] == 3.0
     assert learned["interquartile_mean"]["share_of_savings"] is None
     assert (learned["worst_seed"], rule["worst_seed"]) == (1, None)
@@ -182,19 +208,17 @@ def test_statistics_of_the_runs_of_a_method():
 
 
 def test_a_missing_regret_leaves_no_worst_seed():
-    broken = replace(run(1).metrics, regret=math.nan)
-    runs = (run(0), replace(run(1), metrics=broken))
-    entry = home_document(home(methods=(MethodResults("HA-1", runs),)))["methods"]["HA-1"]
-    assert entry["worst_seed"] is entry["mean"]["regret"] is None
+    broken = run(1).model_copy(update={"regret": None})
+    found = method_runs([run(0), broken])
+    assert found.worst_seed is found.mean.regret is None
 
 
 def test_regret_and_pareto_stand_in_the_file():
-    results = replace(
-        home(),
-        regret=(MethodRegret("HA-1", 3.0, 2.0, -0.5, 1.5),),
-        pareto=(ParetoPoint("PPO", "beta_T", 0.1, 30.0, math.nan, 1, ("schedules/a/PPO-sweep-0.csv",)),),
+    results = home(
+        regret={"HA-1": RegretSplit(total=3.0, future=2.0, thermal_model=-0.5, policy=1.5)},
+        pareto=(point(deviation=math.nan),),
     )
-    entry = home_document(results)
+    entry = json_content(results)
     split = {"total": 3.0, "future": 2.0, "thermal_model": -0.5, "policy": 1.5}
     assert entry["regret"] == {"HA-1": split}
     assert entry["pareto"] == [
@@ -215,6 +239,20 @@ def test_part_of():
     assert is_part_of({"a": []}, {"a": [1]})
     assert not is_part_of({"a": 1}, {"a": 2})
     assert not is_part_of({"a": 1}, None)
+    assert is_part_of({"a": None}, {"a": 1})
     assert not is_part_of({"a": [1]}, {"a": [1, 2]})
     assert is_part_of({"a": [{"b": 1}]}, {"a": [{"b": 2}, {"b": 1, "c": 3}]})
     assert not is_part_of({"a": [{"b": 1}]}, {"a": [{"b": 2}, {"c": 1}]})
+
+
+def test_a_damaged_entry_is_made_anew_and_the_others_stay(tmp_path):
+    ledger_of(tmp_path).put("a", home({"Rule": [run()]}))
+    written = content(tmp_path)
+    written["homes"]["b"] = None
+    written["homes"]["c"] = {"methods": 3}
+    (tmp_path / "results.json").write_text(json.dumps(written))
+    notices = Notices()
+    ledger = ledger_of(tmp_path, progress=notices)
+    ledger.put("d", home())
+    assert list(content(tmp_path)["homes"]) == ["a", "d"]
+    assert ["b is damaged" in notices.messages[0], "c is damaged" in notices.messages[1]] == [True, True]

@@ -30,7 +30,7 @@ def robust(finished, tmp_path_factory):
     shutil.copytree(finished[0], folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("hemma.studies.robustness.trial.faults", some(FEW))
-        yield folder, run_faults(tiny_job(folder))
+        yield folder, json_content(run_faults(tiny_job(folder)))
 
 
 def test_where_nothing_is_wrong_it_is_the_main_table(finished, robust):
@@ -74,7 +74,7 @@ def test_a_second_call_takes_everything_from_the_folder(robust):
     folder, content = robust
     before = (folder / "robustness.json").read_bytes()
     watching = Watching()
-    assert run_faults(tiny_job(folder), watching) == content
+    assert json_content(run_faults(tiny_job(folder), watching)) == content
     assert (folder / "robustness.json").read_bytes() == before
     assert json.loads(before) == content
 
@@ -97,7 +97,7 @@ def test_other_magnitudes_give_other_results(robust, monkeypatch):
     folder, content = robust
     monkeypatch.setattr("hemma.studies.robustness.trial.faults", some(["worn battery"]))
     harder = replace(tiny_experiment(), faults=FaultSettings(efficiency=0.6))
-    [other] = run_faults(tiny_job(folder, harder))["homes"][HOME]["faults"]
+    [other] = json_content(run_faults(tiny_job(folder, harder)))["homes"][HOME]["faults"]
     usual = content["homes"][HOME]["faults"][FEW.index("worn battery")]
     costs = [table["methods"]["default"]["runs"][0]["energy_cost"] for table in (usual, other)]
     assert costs[1] > costs[0]

@@ -12,8 +12,7 @@ from tiny_experiment import Watching, tiny_experiment, tiny_job
 from hemma.errors import HemmaError
 from hemma.experiment.run import Stage, run
 from hemma.home import Battery
-from hemma.results.found import RESULTS_FILE
-from hemma.results.results import load_results
+from hemma.results.results import RESULTS_FILE, load_results
 
 HOME = "austin2021-2"
 METRICS = {

@@ -9,14 +9,15 @@ from tiny_experiment import Watching, tiny_job
 
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
+from hemma.results.reading import json_content
 from hemma.results.store import Store
 from hemma.stages.case import make_case
 from hemma.studies.robustness.faults import faults
-from hemma.studies.robustness.records import load_robustness
+from hemma.studies.robustness.records import FaultRun, load_robustness
 from hemma.studies.robustness.run import measure_faults, run_stored_faults
 from hemma.studies.robustness.scenes import scene
 from hemma.studies.robustness.stored import stored_job, stored_trial
-from hemma.studies.robustness.trial import FOREIGN, FaultRun, Trial
+from hemma.studies.robustness.trial import FOREIGN, Trial
 
 HOME = "austin2021-2"
 COMMAND = "hemma robustness --for-tests"
@@ -46,7 +47,7 @@ def measured(finished, tmp_path_factory):
     """Folder, content and watcher of a filled folder, measured as it is."""
     folder = shutil.copytree(finished[0], tmp_path_factory.mktemp("stored") / "results")
     watching = Watching()
-    return folder, run_stored_faults(folder, None, COMMAND, watching), watching
+    return folder, json_content(run_stored_faults(folder, None, COMMAND, watching)), watching
 
 
 def test_it_has_the_settings_homes_and_test_period_of_the_folder(filled):
@@ -107,21 +108,21 @@ def test_controllers_of_another_home_act_in_this_one(trial):
     own, foreign = trial.results(guest)
     assert (own.fault, foreign.fault) == ("nothing", FOREIGN.name)
     assert foreign.runs == guest.runs(scene(case.home, case.test))
-    costs = [{run.method: run.energy_cost for run in one.runs} for one in (own, foreign)]
+    costs = [{name: one.mean.energy_cost for name, one in met.methods.items()} for met in (own, foreign)]
     assert costs[0]["Rule"] == costs[1]["Rule"]
     assert costs[0]["MPC hourly means"] != costs[1]["MPC hourly means"]
-    assert all(run.regret >= -1e-4 for run in foreign.runs)
+    assert all(run.regret >= -1e-4 for one in foreign.methods.values() for run in one.runs)
 
 
 def test_each_home_has_the_controllers_of_the_next_and_the_last_those_of_the_first(trial, monkeypatch):
     def runs(self, _):
         """One run that says whose it is."""
-        return (FaultRun("Rule", None, float(self.expert.case.name[-1]), 0.0, 0.0, None, 0.0, 0, 0),)
+        return {"Rule": [FaultRun(energy_cost=float(self.expert.case.name[-1]))]}
 
     monkeypatch.setattr(Trial, "runs", runs)
     folder = trial.store.folder
     homes = [moved(trial, home) for home in (4, 5, 6)]
-    content = measure_faults(stored_job(folder, None, COMMAND), homes)
+    content = json_content(measure_faults(stored_job(folder, None, COMMAND), homes))
     costs = [
         [one["methods"]["Rule"]["mean"]["energy_cost"] for one in home["faults"]]
         for home in content["homes"].values()

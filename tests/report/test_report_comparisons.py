@@ -7,6 +7,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 from synthetic_results import save_results, write_results
 
+from hemma.evaluation import RegretSplit
 from hemma.report import write_report
 from hemma.report.drawing.canvas import drawing_style, new_figure
 from hemma.report.drawing.labels import Label, place_labels
@@ -16,7 +17,7 @@ from hemma.report.figures.panels_improvement import comparison_of, improvement_f
 from hemma.report.figures.panels_pareto import pareto_figure, sweeps_of
 from hemma.report.figures.panels_regret import regret_figure
 from hemma.report.page.overview import differences_of, worst_over_homes
-from hemma.results.findings import Improvement, PairedDifference, ParetoPoint, RegretSplit
+from hemma.results.findings import Improvement, PairedDifference, ParetoPoint
 from hemma.results.results import HomeResults, Results, load_results
 
 REGRET_BARS = 3

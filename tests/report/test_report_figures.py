@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from synthetic_results import save_results, write_results
 
+from hemma.evaluation import Intervals
 from hemma.report import write_report
 from hemma.report.drawing.canvas import drawing_style, new_figure, save
 from hemma.report.figures.panels_curves import thinned
@@ -20,7 +21,7 @@ from hemma.report.figures.panels_time import draw_battery_level, draw_indoor_tem
 from hemma.report.methods import GROUPS, look_of
 from hemma.report.pictures import HomeSeries, read_series
 from hemma.report.series import SeriesReader
-from hemma.results.records import DemonstrationRuns, Intervals
+from hemma.results.records import DemonstrationRuns
 from hemma.results.results import HomeResults, load_results
 
 NAMES = (

@@ -58,10 +58,12 @@ def robustness(  # noqa: PLR0913
 ) -> None:
     """Measure all methods again under faults: of sensors, building, battery, prices, household."""
     request = Request(traces, chosen_homes(home, homes), test_from, settings, out, seeds, quick)
+    from hemma.results.reading import json_content
+
     with going_on_later():
         content = _trained(request) if folder is None else _as_it_is(folder, request)
     if json:
-        print_json(content)
+        print_json(json_content(content))
     else:
         _print_table(out if folder is None else folder, every)
 

@@ -1,7 +1,7 @@
 """Replay a controller on a home, its metrics at equal comfort, and statistics over seeds."""
 
 from hemma.evaluation.improvement import Improvement, Pair, Sample, probability_of_improvement
-from hemma.evaluation.metrics import NEGLIGIBLE, EqualComfort, Metrics, measure
+from hemma.evaluation.metrics import NEGLIGIBLE, EqualComfort, Intervals, Measures, Metrics, measure
 from hemma.evaluation.regret import RegretSplit, regret, split_regret
 from hemma.evaluation.replay import Outcome, evaluate, evaluate_stacked
 from hemma.evaluation.statistics import (
@@ -20,6 +20,8 @@ __all__ = [
     "Improvement",
     "Interval",
     "IntervalKind",
+    "Intervals",
+    "Measures",
     "Metrics",
     "Outcome",
     "Pair",

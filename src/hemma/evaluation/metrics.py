@@ -1,11 +1,13 @@
 """What is reported of a method, with both distances to the optimum taken at equal comfort."""
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from hemma.evaluation.regret import regret
 from hemma.evaluation.replay import Outcome
+from hemma.record import Number, Range, Record
 
 NEGLIGIBLE = 1e-6
 """Costs nearer to zero than this [currency] are no denominator: a millionth is below any tariff's digits."""
@@ -21,28 +23,36 @@ class EqualComfort:
     """no_battery(D), the same without a battery [currency]."""
 
 
-@dataclass(frozen=True)
-class Metrics:
-    """One run of one method on the test period."""
+Value = TypeVar("Value")
 
-    energy_cost: float
-    """Sum of X1 + X2 [currency], objective (1)."""
-    transaction_cost: float
+
+class Measures(Record, Generic[Value]):
+    """Something about every metric: its value in a run, a mean, an interval. The one list of metrics."""
+
+    energy_cost: Value | None = None
+    """Sum of X1 + X2 over the period [currency], objective (1)."""
+    transaction_cost: Value | None = None
     """Sum of X1 [currency]."""
-    battery_cost: float
+    battery_cost: Value | None = None
     """Sum of X2 [currency]."""
-    mean_temperature_deviation: float
+    mean_temperature_deviation: Value | None = None
     """Mean of X3 over the slots [degC], the paper's MTD."""
-    total_temperature_deviation: float
+    total_temperature_deviation: Value | None = None
     """D, sum of X3 [degC], objective (2)."""
-    gap_to_optimum: float | None
+    gap_to_optimum: Value | None = None
     """(cost - optimum(D)) / |optimum(D)|, a fraction; None where optimum(D) is zero."""
-    share_of_savings: float | None
+    share_of_savings: Value | None = None
     """(no_battery(D) - cost) / (no_battery(D) - optimum(D)); None where a battery saves nothing."""
-    regret: float
+    regret: Value | None = None
     """cost - optimum(D) [currency]: what perfect information would have saved at equal comfort."""
-    seconds_to_train: float | None
+    seconds_to_train: Value | None = None
     """Wall-clock time of the training [s], compilation included; None without training."""
+
+
+Metrics = Measures[Number]
+"""Of one run, or means over the runs of a method; None where undefined."""
+Intervals = Measures[Range]
+"""The 95 % intervals of the means."""
 
 
 def measure(outcome: Outcome, reference: EqualComfort, seconds_to_train: float | None = None) -> Metrics:

@@ -17,16 +17,12 @@ with its own forecast, so that its policy part is zero.
 """
 
 import math
-from dataclasses import dataclass
 
 from hemma.errors import HemmaError
-
-ROUNDING = 1e-9
-"""How far the parts may be from the total, relative to the largest of them."""
+from hemma.record import Number, Record
 
 
-@dataclass(frozen=True)
-class RegretSplit:
+class RegretSplit(Record):
     """total = future + thermal_model + policy, all [currency].
 
     ``future`` is at least zero, up to the solver's gap: nobody beats perfect information at equal comfort.
@@ -44,29 +40,21 @@ class RegretSplit:
     the splits.
     """
 
-    total: float
+    total: Number = None
     """regret(x)."""
-    future: float
+    future: Number = None
     """The part that comes from not knowing the future."""
-    thermal_model: float
+    thermal_model: Number = None
     """The part that comes from planning through the identified network instead of the true building."""
-    policy: float
+    policy: Number = None
     """The part that comes from not deciding as the planner does."""
 
-    def __post_init__(self):
-        """Refuse parts that are not finite or do not add up."""
-        parts = (self.future, self.thermal_model, self.policy)
-        if not all(math.isfinite(value) for value in (self.total, *parts)):
-            raise HemmaError(
-                f"regret: expected finite parts, got total {self.total}, future {self.future}, thermal model "
-                f"{self.thermal_model}, policy {self.policy}; measure the runs that are missing"
-            )
-        scale = max(abs(value) for value in (self.total, *parts))
-        if abs(self.total - sum(parts)) > ROUNDING * scale:
-            raise HemmaError(
-                f"regret: expected parts that add up to the total {self.total:g}, got {sum(parts):g}; "
-                "take them from split_regret"
-            )
+    @property
+    def parts(self) -> tuple[float, float, float] | None:
+        """Future, thermal model and policy; None unless all are known."""
+        if self.future is None or self.thermal_model is None or self.policy is None:
+            return None
+        return self.future, self.thermal_model, self.policy
 
 
 def regret(cost: float, optimum: float) -> float:
@@ -79,7 +67,16 @@ def split_regret(controller: float, planner: float, planner_with_true_model: flo
 
     ``planner`` is M through the identified network, ``planner_with_true_model`` is M through the thermal
     model of the simulated home. For a row that is such a planner ``controller`` and ``planner`` are the same.
+    Raises ``HemmaError`` where one of them is not finite.
     """
+    regrets = {
+        "the controller": controller,
+        "the planner": planner,
+        "the planner with the true model": planner_with_true_model,
+    }
+    for name, value in regrets.items():
+        if not math.isfinite(value):
+            raise HemmaError(f"regret: expected finite regrets, got {value} of {name}; measure it again")
     return RegretSplit(
         total=controller,
         future=planner_with_true_model,

@@ -1,13 +1,16 @@
 """All stages of one home, in their order; the results file grows with each."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum, auto
 from functools import partial
+from typing import Any
 
-from hemma.results.found import HomeResults, MethodResults, Run
 from hemma.results.ledger import Ledger
+from hemma.results.records import DemonstrationRuns, Run
+from hemma.results.results import HomeResults
 from hemma.results.store import Store
+from hemma.results.summary import method_runs
 from hemma.stages.case import Case, empty_results
 from hemma.stages.default import choose_forecast
 from hemma.stages.demonstrate import Expert
@@ -59,7 +62,7 @@ class HomeRun:
         """Run the stages, as far as ``last``."""
         results = empty_results(self.case)
         identification = identify(self.case, self.store)
-        results = self._put(replace(results, identification=identification.found))
+        results = self._put(results, identification=identification.found)
         if last is Stage.IDENTIFY:
             return
         expert = Expert(self.case, identification)
@@ -105,8 +108,9 @@ class HomeRun:
         """Baselines first, since they are quick; then what is learned, measured when it is trained."""
         judge = Judge(self.case, self.store)
         judge.write_exogenous()
-        methods = References(judge, expert).methods()
-        results = self._put(replace(results, methods=methods, optimum=plain_optimum(judge)))
+        references = References(judge, expert).methods()
+        methods = {name: method_runs(runs) for name, runs in references.items()}
+        results = self._put(results, methods=methods, optimum=plain_optimum(judge))
         trained = self._train(imitating, bands)
         results = self._recommended(results, expert, trained)
         for learned in imitating:
@@ -114,38 +118,43 @@ class HomeRun:
         paid = self._paid(expert)
         for _, learned in paid:
             results = self._learned(results, judge, learned, train_lesson(learned.lesson, self.store))
-        results = self._put(replace(results, regret=split_regrets(judge, expert, results.methods)))
+        results = self._put(results, regret=split_regrets(judge, expert, results.methods))
         pareto = Pareto(judge)
-        runs = [run.metrics.total_temperature_deviation for method in methods for run in method.runs]
-        points = pareto.frontier(max(runs))
+        deviations = [run.total_temperature_deviation or 0.0 for runs in references.values() for run in runs]
+        points = pareto.frontier(max(deviations))
         for sweep, _ in paid:
             points += pareto.comfort_prices(sweep)
         if bands is not None:
-            usual = next(method.runs for method in results.methods if method.method == "HA-1")
-            points += pareto.comfort_bands(bands, trained[bands.lesson.label], usual)
-        self._put(replace(results, pareto=points))
+            points += pareto.comfort_bands(bands, trained[bands.lesson.label], results.methods["HA-1"].runs)
+        self._put(results, pareto=points)
 
     def _recommended(self, results: HomeResults, expert: Expert, trained: dict[str, Trained]) -> HomeResults:
         choice = choose_forecast(expert, self.store)
         found = Tryout(expert, self.store, choice, trained.get("HA-1")).recommendation()
-        return self._put(replace(results, recommendation=found))
+        return self._put(results, recommendation=found)
 
     def _learned(self, results: HomeResults, judge: Judge, learned: Learned, trained: Trained) -> HomeResults:
         lesson = learned.lesson
         runs = judge.judged(lesson.label, trained.mark, partial(play, self.case, lesson, trained))
-        return self._put(_with(results, learned, runs))
+        return self._put(results, **_found(results, learned, runs))
 
-    def _put(self, results: HomeResults) -> HomeResults:
-        self.ledger.put(results)
+    def _put(self, results: HomeResults, **found: Any) -> HomeResults:
+        """Write the results with what was ``found``, by the names of their fields."""
+        results = results.model_copy(update=found)
+        self.ledger.put(self.case.name, results)
         return results
 
 
-def _with(results: HomeResults, learned: Learned, runs: tuple[Run, ...]) -> HomeResults:
-    """The results with those of one more method; HA-1 and HA-2 are points of the data efficiency as well."""
+def _found(results: HomeResults, learned: Learned, runs: tuple[Run, ...]) -> dict[str, Any]:
+    """What one more method adds; HA-1 and HA-2 are points of the data efficiency as well."""
+    found: dict[str, Any] = {}
+    method = method_runs(runs)
     if learned.method != ANY_LENGTH:
-        method = MethodResults(learned.method, runs, learned.days)
-        results = replace(results, methods=(*results.methods, method))
-    if learned.method not in LENGTHS:
-        return results
-    lengths = (*results.data_efficiency, MethodResults(ANY_LENGTH, runs, learned.days))
-    return replace(results, data_efficiency=tuple(sorted(lengths, key=lambda length: length.days or 0)))
+        found["methods"] = {**results.methods, learned.method: method}
+        if learned.days is not None:
+            found["demonstration_days"] = {**results.demonstration_days, learned.method: learned.days}
+    if learned.method in LENGTHS and learned.days is not None:
+        length = DemonstrationRuns(**dict(method), days=learned.days, method=ANY_LENGTH)
+        lengths = (*results.data_efficiency, length)
+        found["data_efficiency"] = tuple(sorted(lengths, key=lambda length: length.days))
+    return found

@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from hemma.experiment.home_run import HomeRun, Stage
-from hemma.results.found import Head
 from hemma.results.ledger import open_ledger
 from hemma.results.progress import Progress, Silence
+from hemma.results.reading import json_content
 from hemma.results.store import Store
 from hemma.settings.keys import outside
 from hemma.stages.case import make_case
@@ -26,13 +26,13 @@ def run(job: Job, last: Stage = Stage.REPORT, progress: Progress | None = None) 
     require_different_names(job.homes)
     cases = [make_case(job.experiment, traces, job.test_from) for traces in job.homes]
     require_writable(job.folder)
-    ledger = open_ledger(job.folder, Head(job.command, outside(job.experiment)), progress)
+    ledger = open_ledger(job.folder, job.command, outside(job.experiment), progress)
     for case in cases:
         HomeRun(case, Store(job.folder, case.name, progress), ledger).up_to(last)
     ledger.close()
     if last is Stage.REPORT:
         _report(job.folder, progress)
-    return ledger.content
+    return json_content(ledger.results)
 
 
 def _report(folder: Path, progress: Progress) -> None:

@@ -4,14 +4,11 @@ Everything here follows from the runs that stand in the file, so it is computed 
 never kept.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
-from typing import Any
 
 from hemma.evaluation import (
     NEGLIGIBLE,
-    Interval,
     Pair,
     Sample,
     interval_kind,
@@ -19,117 +16,103 @@ from hemma.evaluation import (
     summarise,
     summarise_homes,
 )
+from hemma.results.findings import Aggregate, Aggregated, AggregateMethod, Improvement, PairedDifference
+from hemma.results.results import HomeResults
+from hemma.results.summary import COMPARED, bounds
 
-COMPARED = "regret"
-"""Of this metric the smaller value improves: what perfect information would have saved at equal comfort."""
 PAIRED = "share_of_savings"
 """Of this metric the differences between methods are taken home by home."""
+WORST: dict[str, Callable[[Sequence[float]], float]] = {
+    "share_of_savings": min,
+    "gap_to_optimum": max,
+    "mean_temperature_deviation": max,
+    "regret": max,
+}
+"""The metrics that make sense over several homes, and the worst of several values of each."""
 
 
-@dataclass(frozen=True)
-class Aggregated:
-    """A metric that makes sense over several homes."""
-
-    metric: str
-    worst: Callable[[Sequence[float]], float]
-    """The worst of several values."""
+def improvements(homes: Sequence[HomeResults]) -> tuple[Improvement, ...]:
+    """Every pair of methods that all ``homes`` have, in their order, each pair once."""
+    return tuple(_improvement(homes, method, over) for method, over in combinations(_shared(homes), 2))
 
 
-AGGREGATED = (
-    Aggregated("share_of_savings", min),
-    Aggregated("gap_to_optimum", max),
-    Aggregated("mean_temperature_deviation", max),
-    Aggregated("regret", max),
-)
-
-
-def improvements(homes: Sequence[Any]) -> list[dict[str, Any]]:
-    """Every pair of methods that all ``homes`` (entries of the file) have, in their order, each pair once."""
-    return [_improvement(homes, method, over) for method, over in combinations(_shared(homes), 2)]
-
-
-def aggregate(homes: dict[str, Any]) -> dict[str, Any] | None:
-    """The entry of all homes with measured methods; None unless at least two share one.
+def aggregate(homes: Mapping[str, HomeResults]) -> Aggregate | None:
+    """What holds over all homes with measured methods; None unless at least two share one.
 
     Every home counts the same. ``interval`` is about the same homes with other seeds, ``interval_over_homes``
     about other homes drawn like these.
     """
-    measured = {name: home for name, home in homes.items() if home["methods"]}
+    measured = {name: home for name, home in homes.items() if home.methods}
     entries = list(measured.values())
     methods = _shared(entries)
     if len(measured) < 2 or not methods:
         return None
-    return {
-        "homes": list(measured),
-        "methods": {method: _over_homes(entries, method) for method in methods},
-        "probability_of_improvement": improvements(entries),
-        "paired": [_paired(measured, method, over) for method, over in combinations(methods, 2)],
-    }
+    return Aggregate(
+        homes=tuple(measured),
+        methods={method: _over_homes(entries, method) for method in methods},
+        probability_of_improvement=improvements(entries),
+        paired=tuple(_paired(measured, method, over) for method, over in combinations(methods, 2)),
+    )
 
 
-def _shared(homes: Sequence[Any]) -> list[str]:
-    first, *others = [home["methods"] for home in homes] or [{}]
-    return [method for method in first if all(method in other for other in others)]
+def _shared(homes: Sequence[HomeResults]) -> list[str]:
+    if not homes:
+        return []
+    first, *others = homes
+    return [method for method in first.methods if all(method in other.methods for other in others)]
 
 
-def _values(home: Any, method: str, metric: str) -> list[float | None]:
-    return [run[metric] for run in home["methods"][method]["runs"]]
+def _values(home: HomeResults, method: str, metric: str) -> list[float | None]:
+    return [getattr(run, metric) for run in home.methods[method].runs]
 
 
-def _improvement(homes: Sequence[Any], method: str, over: str) -> dict[str, Any]:
+def _improvement(homes: Sequence[HomeResults], method: str, over: str) -> Improvement:
     pairs = [Pair(_sample(home, method), _sample(home, over)) for home in homes]
     found = probability_of_improvement(pairs, NEGLIGIBLE)
-    return {
-        "method": method,
-        "over": over,
-        "probability": found.probability,
-        "interval": _bounds(found.interval),
-    }
+    return Improvement(
+        method=method, over=over, probability=found.probability, interval=bounds(found.interval)
+    )
 
 
-def _sample(home: Any, method: str) -> Sample:
-    is_random = any(run["seed"] is not None for run in home["methods"][method]["runs"])
+def _sample(home: HomeResults, method: str) -> Sample:
+    is_random = any(run.seed is not None for run in home.methods[method].runs)
     return Sample(tuple(_values(home, method, COMPARED)), is_random)
 
 
-def _over_homes(homes: Sequence[Any], method: str) -> dict[str, Any]:
-    kind = interval_kind([len(home["methods"][method]["runs"]) for home in homes])
-    metrics = {one.metric: _aggregated(homes, method, one) for one in AGGREGATED}
-    return {**metrics, "interval_kind": kind}
+def _over_homes(homes: Sequence[HomeResults], method: str) -> AggregateMethod:
+    kind = interval_kind([len(home.methods[method].runs) for home in homes])
+    metrics = {metric: _aggregated(homes, method, metric) for metric in WORST}
+    return AggregateMethod(interval_kind=kind, **metrics)
 
 
-def _aggregated(homes: Sequence[Any], method: str, one: Aggregated) -> dict[str, Any]:
-    values = [_values(home, method, one.metric) for home in homes]
+def _aggregated(homes: Sequence[HomeResults], method: str, metric: str) -> Aggregated:
+    values = [_values(home, method, metric) for home in homes]
     summary = summarise_homes(values)
     known = [value for runs in values for value in runs if value is not None]
-    return {
-        "mean": summary.mean,
-        "interval": _bounds(summary.interval),
-        "interval_over_homes": _bounds(summarise(_home_means(homes, method, one.metric)).interval),
-        "interquartile_mean": summary.interquartile_mean,
-        "worst": None if summary.mean is None else one.worst(known),
-    }
+    return Aggregated(
+        mean=summary.mean,
+        interval=bounds(summary.interval),
+        interval_over_homes=bounds(summarise(_home_means(homes, method, metric)).interval),
+        interquartile_mean=summary.interquartile_mean,
+        worst=None if summary.mean is None else WORST[metric](known),
+    )
 
 
-def _home_means(homes: Sequence[Any], method: str, metric: str) -> list[float | None]:
+def _home_means(homes: Sequence[HomeResults], method: str, metric: str) -> list[float | None]:
     return [summarise(_values(home, method, metric)).mean for home in homes]
 
 
-def _paired(homes: dict[str, Any], method: str, over: str) -> dict[str, Any]:
+def _paired(homes: Mapping[str, HomeResults], method: str, over: str) -> PairedDifference:
     """How much more of the savings one method keeps than another, home by home."""
     entries = list(homes.values())
     both = zip(_home_means(entries, method, PAIRED), _home_means(entries, over, PAIRED), strict=True)
     differences = [None if own is None or other is None else own - other for own, other in both]
     summary = summarise(differences)
-    return {
-        "method": method,
-        "over": over,
-        "metric": PAIRED,
-        "differences": dict(zip(homes, differences, strict=True)),
-        "mean": summary.mean,
-        "interval": _bounds(summary.interval),
-    }
-
-
-def _bounds(interval: Interval | None) -> list[float] | None:
-    return None if interval is None else [interval.low, interval.high]
+    return PairedDifference(
+        method=method,
+        over=over,
+        metric=PAIRED,
+        differences=dict(zip(homes, differences, strict=True)),
+        mean=summary.mean,
+        interval=bounds(summary.interval),
+    )

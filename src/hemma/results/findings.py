@@ -3,7 +3,8 @@ cost against comfort, and what holds over several homes. Older folders have none
 
 from pydantic import Field
 
-from hemma.results.records import Number, Range, Record
+from hemma.evaluation import IntervalKind
+from hemma.record import Number, Range, Record
 
 
 class Improvement(Record):
@@ -16,26 +17,6 @@ class Improvement(Record):
     interval: Range = None
 
 
-class RegretSplit(Record):
-    """Regret = future + thermal model + policy [currency]; any part may be negative."""
-
-    total: Number = None
-    """Cost minus optimum(D)."""
-    future: Number = None
-    """What not knowing prices, weather and load costs."""
-    thermal_model: Number = None
-    """What planning with an identified instead of the true building costs."""
-    policy: Number = None
-    """The rest: what the controller does worse than planning with the same knowledge would."""
-
-    @property
-    def parts(self) -> tuple[float, float, float] | None:
-        """Future, thermal model and policy; None unless all are known."""
-        if self.future is None or self.thermal_model is None or self.policy is None:
-            return None
-        return self.future, self.thermal_model, self.policy
-
-
 class ParetoPoint(Record):
     """One point of a sweep that trades energy cost against comfort."""
 
@@ -45,8 +26,12 @@ class ParetoPoint(Record):
     """What was swept."""
     value: Number = None
     energy_cost: Number = None
+    """[currency] over the test period, a mean where there are several runs."""
     mean_temperature_deviation: Number = None
+    """[degC]."""
     runs: int = 1
+    schedules: tuple[str, ...] = ()
+    """Paths of the runs' schedules inside the folder; none for a proven optimum."""
 
 
 class Aggregated(Record):
@@ -58,6 +43,8 @@ class Aggregated(Record):
     interval_over_homes: Range = None
     """On other homes drawn like these, with other seeds."""
     interquartile_mean: Number = None
+    worst: Number = None
+    """Of all runs."""
 
 
 class PairedDifference(Record):
@@ -76,6 +63,7 @@ class PairedDifference(Record):
 class AggregateMethod(Record):
     """A method over all homes."""
 
+    interval_kind: IntervalKind | None = None
     share_of_savings: Aggregated = Aggregated()
     gap_to_optimum: Aggregated = Aggregated()
     mean_temperature_deviation: Aggregated = Aggregated()

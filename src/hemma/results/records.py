@@ -1,72 +1,12 @@
 """The plain records of ``results.json``: runs, methods, periods, and what is known about a home."""
 
-import math
-from typing import Annotated, Any
+from pydantic import Field
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
-
-
-def _finite_or_none(value: Any) -> Any:
-    """JSON has no NaN: a metric that is undefined comes as null, as NaN or as an infinity."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+from hemma.evaluation import IntervalKind, Intervals, Measures, Metrics
+from hemma.record import Number, Record
 
 
-def _both_or_none(value: Any) -> Any:
-    if isinstance(value, list) and any(_finite_or_none(bound) is None for bound in value):
-        return None
-    return value
-
-
-Number = Annotated[float | None, BeforeValidator(_finite_or_none)]
-"""A metric, or None where it is undefined."""
-Range = Annotated[tuple[float, float] | None, BeforeValidator(_both_or_none)]
-"""Low and high end of a 95 % interval, or None where there is none."""
-
-
-class Record(BaseModel):
-    """What all parts of the file share: frozen, and unknown keys of later versions are left alone."""
-
-    model_config = ConfigDict(frozen=True, extra="ignore")
-
-
-class Metrics(Record):
-    """The metrics of one run, or their means over the runs of a method."""
-
-    energy_cost: Number = None
-    """Sum of X1 + X2 over the test period [currency]."""
-    transaction_cost: Number = None
-    """Sum of X1 [currency]."""
-    battery_cost: Number = None
-    """Sum of X2 [currency]."""
-    mean_temperature_deviation: Number = None
-    """Mean of X3 [degC]."""
-    total_temperature_deviation: Number = None
-    """Sum of X3 [degC]."""
-    gap_to_optimum: Number = None
-    """Distance to the optimum at equal comfort, a fraction."""
-    share_of_savings: Number = None
-    """Part of the possible savings that was kept, at equal comfort, a fraction."""
-    regret: Number = None
-    """Cost minus optimum(D) [currency]."""
-    seconds_to_train: Number = None
-    """Training time [s]."""
-
-
-class Intervals(Record):
-    """The 95 % intervals of the means, by the names of the metrics."""
-
-    energy_cost: Range = None
-    transaction_cost: Range = None
-    battery_cost: Range = None
-    mean_temperature_deviation: Range = None
-    total_temperature_deviation: Range = None
-    gap_to_optimum: Range = None
-    share_of_savings: Range = None
-    regret: Range = None
-    seconds_to_train: Range = None
-
-
-class Run(Metrics):
+class Run(Measures[Number]):
     """One run; a deterministic method has one, without a seed."""
 
     seed: int | None = None
@@ -76,12 +16,14 @@ class Run(Metrics):
     """Path of its training curve inside the folder; None without training."""
 
 
-class Method(Record):
+class MethodRuns(Record):
     """All runs of a method on a home."""
 
     runs: tuple[Run, ...] = Field(min_length=1)
     mean: Metrics
     interval: Intervals = Intervals()
+    interval_kind: IntervalKind | None = None
+    """How the intervals were found; None where there is a single run."""
     interquartile_mean: Metrics = Metrics()
     """Means of the middle half of the runs, which one run gone astray does not move."""
     worst_seed: int | None = None
@@ -113,7 +55,7 @@ class Method(Record):
         return max(costs, key=lambda run: run.energy_cost or 0.0) if costs else None
 
 
-class DemonstrationRuns(Method):
+class DemonstrationRuns(MethodRuns):
     """A method trained on demonstrations of a certain length."""
 
     days: float
@@ -130,7 +72,7 @@ class Period(Record):
 class Identification(Record):
     """How well the identified network predicts the indoor temperature without correction."""
 
-    rmse_c: dict[str, Number] = {}
+    rmse_c: dict[str, Number] = Field(default_factory=dict)
     """Root mean square error [degC] by prediction horizon."""
     free_run: str | None = None
     """Path of the free run inside the folder."""

@@ -1,4 +1,4 @@
-"""``results.json`` as typed values: the border between a results folder and everything drawn from it."""
+"""``results.json``: everything an experiment found, as it is written and as it is read."""
 
 from pathlib import Path
 from typing import Any, Literal
@@ -6,43 +6,46 @@ from typing import Any, Literal
 from pydantic import Field
 
 from hemma.errors import HemmaError
-from hemma.results.findings import Aggregate, Improvement, ParetoPoint, RegretSplit
+from hemma.evaluation import RegretSplit
+from hemma.record import Record
+from hemma.results.findings import Aggregate, Improvement, ParetoPoint
 from hemma.results.reading import read_record
 from hemma.results.records import (
     DemonstrationRuns,
     Identification,
-    Method,
+    MethodRuns,
     Optimum,
     Period,
     Recommendation,
-    Record,
 )
 
 RESULTS_FILE = "results.json"
 
 
 class HomeResults(Record):
-    """Everything about one home."""
+    """Everything about one home; grows stage by stage."""
 
-    currency: str
-    slot_length_h: float = Field(gt=0)
-    comfort_c: tuple[float, float]
-    test: Period
-    methods: dict[str, Method]
-    """Empty while no method has finished."""
-    training: Period | None = None
     source: str = ""
+    currency: str
     notes: tuple[str, ...] = ()
     traces_sha256: str = ""
+    slot_length_h: float = Field(gt=0)
+    training: Period | None = None
+    test: Period
+    comfort_c: tuple[float, float]
+    """T^low and T^upp."""
     identification: Identification | None = None
     optimum: Optimum | None = None
     recommendation: Recommendation | None = None
     demonstration_days: dict[str, float] = Field(default_factory=dict)
+    """By method, of those that learn from demonstrations."""
+    methods: dict[str, MethodRuns] = Field(default_factory=dict)
+    """Empty while no method has finished."""
     data_efficiency: tuple[DemonstrationRuns, ...] = ()
-    probability_of_improvement: tuple[Improvement, ...] = ()
     regret: dict[str, RegretSplit] = Field(default_factory=dict)
     """By method."""
     pareto: tuple[ParetoPoint, ...] = ()
+    probability_of_improvement: tuple[Improvement, ...] = ()
 
     @property
     def test_days(self) -> float:
@@ -53,15 +56,18 @@ class HomeResults(Record):
 class Results(Record):
     """The whole file."""
 
-    version: Literal[1] = Field(alias="schema")
+    version: Literal[1] = Field(default=1, alias="schema")
     hemma: str
+    code: str = ""
+    """SHA-256 of the source that the numbers come from."""
     command: str = "hemma reproduce --out results"
     """What was typed to get the folder."""
     settings: dict[str, Any] = Field(default_factory=dict)
-    homes: dict[str, HomeResults]
     interval_kind: str = "Student's t"
     """How the 95 % intervals over seeds were computed, in words; folders that do not say used Student's t."""
+    homes: dict[str, HomeResults]
     aggregate: Aggregate | None = None
+    """Where two homes or more share a method."""
 
     @property
     def finished(self) -> dict[str, HomeResults]:

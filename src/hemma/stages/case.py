@@ -6,7 +6,8 @@ from hemma.data import Split, Traces, split
 from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.results.fingerprint import code, fingerprint
-from hemma.results.found import HomeResults, Period
+from hemma.results.records import Period
+from hemma.results.results import HomeResults
 from hemma.settings.experiment import Experiment
 from hemma.types import Exogenous
 
@@ -40,6 +41,11 @@ class Case:
         return self.parts.test.exogenous
 
     @property
+    def test_period(self) -> Period:
+        """Start and length of the test period, for the records."""
+        return _period(self.parts.test)
+
+    @property
     def training_days(self) -> int:
         """Whole days of the training period."""
         return int(self.training.slots * self.traces.slot_length / HOURS_OF_A_DAY + 1e-9)
@@ -66,15 +72,14 @@ def empty_results(case: Case) -> HomeResults:
     """What is known about a home before the first stage."""
     traces, comfort = case.traces, case.home.comfort
     return HomeResults(
-        name=case.name,
         source=traces.source,
         currency=case.experiment.currency,
         notes=traces.notes,
         traces_sha256=traces.sha256,
-        slot_length=traces.slot_length,
+        slot_length_h=traces.slot_length,
         training=_period(case.parts.training),
-        test=_period(case.parts.test),
-        comfort=(float(comfort.low), float(comfort.high)),
+        test=case.test_period,
+        comfort_c=(float(comfort.low), float(comfort.high)),
     )
 
 

@@ -20,7 +20,7 @@ from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
 from hemma.rl.task import Demonstrated
 from hemma.stages.case import Case
-from hemma.stages.identify import Identification
+from hemma.stages.identify import IdentifiedBuilding
 from hemma.types import Action, Exogenous
 
 STAGE = "demonstrate"
@@ -43,7 +43,7 @@ class Expert:
     """HMPC: plans through the identified network, acts on the simulated home."""
 
     case: Case
-    identification: Identification
+    identification: IdentifiedBuilding
     variant: str = ""
     """Ends the names of the files of an expert that aims at another comfort band."""
 

@@ -18,7 +18,7 @@ from hemma.identification.record import ThermalRecord
 from hemma.identification.store import load_model, save_model
 from hemma.identification.validation import FreeRunErrors, free_run, free_run_errors
 from hemma.results.fingerprint import code, fingerprint
-from hemma.results.found import FreeRunError, Identified
+from hemma.results.records import Identification
 from hemma.results.store import Store
 from hemma.stages.case import Case
 
@@ -29,15 +29,15 @@ SEED = 0
 
 
 @dataclass(frozen=True)
-class Identification:
+class IdentifiedBuilding:
     """The product of the stage."""
 
     model: PhysicallyConsistentNetwork
-    found: Identified
+    found: Identification
     mark: str
 
 
-def identify(case: Case, store: Store) -> Identification:
+def identify(case: Case, store: Store) -> IdentifiedBuilding:
     """Fit the network to a simulated, excited training period; measure it free-running in the test period."""
     settings = case.experiment.identification
     mark = fingerprint(STAGE, code("identification"), case.mark, case.experiment.excitation, settings)
@@ -48,10 +48,10 @@ def identify(case: Case, store: Store) -> Identification:
     else:
         found = _fit(case, store, mark)
         store.progress.finished(STAGE, _message(found))
-    return Identification(load_model(store.folder / store.model(NETWORK)), found, mark)
+    return IdentifiedBuilding(load_model(store.folder / store.model(NETWORK)), found, mark)
 
 
-def identified(store: Store) -> Identification:
+def identified(store: Store) -> IdentifiedBuilding:
     """The product of an earlier run as it lies in the folder, whatever settings or version made it."""
     mark = store.mark_of(PRODUCT)
     content = None if mark is None else store.kept(PRODUCT, mark)
@@ -60,10 +60,10 @@ def identified(store: Store) -> Identification:
             f"{store.folder / store.model(NETWORK)}: expected the network that `hemma reproduce` identifies, "
             "it is missing or was changed. Run `hemma reproduce` into this folder"
         )
-    return Identification(load_model(store.folder / store.model(NETWORK)), _found(content, store), mark)
+    return IdentifiedBuilding(load_model(store.folder / store.model(NETWORK)), _found(content, store), mark)
 
 
-def _fit(case: Case, store: Store, mark: str) -> Identified:
+def _fit(case: Case, store: Store, mark: str) -> Identification:
     settings, excitation = case.experiment.identification, case.experiment.excitation
     store.progress.started(STAGE, settings.updates)
     begun = time.monotonic()
@@ -91,13 +91,14 @@ def _horizons(errors: FreeRunErrors) -> list[tuple[str, float]]:
     ]
 
 
-def _found(content: dict[str, Any], store: Store) -> Identified:
-    errors = tuple(FreeRunError(horizon, error) for horizon, error in content["errors"])
-    return Identified(errors=errors, free_run=store.free_run, seconds=content["seconds"])
+def _found(content: dict[str, Any], store: Store) -> Identification:
+    return Identification(rmse_c=dict(content["errors"]), free_run=store.free_run, seconds=content["seconds"])
 
 
-def _message(found: Identified) -> str:
-    return "free-run error " + ", ".join(f"{e.error:.2g} °C after {e.horizon}" for e in found.errors[:3])
+def _message(found: Identification) -> str:
+    return "free-run error " + ", ".join(
+        f"{error:.2g} °C after {horizon}" for horizon, error in list(found.rmse_c.items())[:3]
+    )
 
 
 def _write_free_run(

@@ -1,13 +1,13 @@
 """Stage: measure a method's runs on the test period, at equal comfort, and write down what they did."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 
-from hemma.evaluation import EqualComfort, Metrics, Outcome, measure
+from hemma.evaluation import EqualComfort, Outcome, measure
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.results.fingerprint import code, fingerprint
-from hemma.results.found import Run
+from hemma.results.records import Run
 from hemma.results.schedules import write_exogenous, write_schedule
 from hemma.results.store import Store
 from hemma.stages.case import Case
@@ -44,10 +44,10 @@ class Judge:
         product = f"{_slug(label)}.runs"
         content = self.store.kept(product, mark)
         if content is not None:
-            return tuple(Run(**{**run, "metrics": Metrics(**run["metrics"])}) for run in content["runs"])
+            return tuple(Run.model_validate(run) for run in content["runs"])
         runs = tuple(self._measured(label, played) for played in play())
         files = [name for run in runs for name in (run.schedule, run.curve) if name is not None]
-        self.store.keep(product, mark, files, {"runs": [asdict(run) for run in runs]})
+        self.store.keep(product, mark, files, {"runs": [run.model_dump(mode="json") for run in runs]})
         return runs
 
     def write_exogenous(self) -> None:
@@ -60,7 +60,7 @@ class Judge:
         schedule = self.store.schedule(file)
         write_schedule(self.store.folder / schedule, self.case.parts.test.time_stamps(), played.outcome)
         metrics = measure(played.outcome, self._at_equal_comfort(played.outcome), played.seconds_to_train)
-        return Run(seed=played.seed, metrics=metrics, schedule=schedule, curve=played.curve)
+        return Run(**metrics.model_dump(), seed=played.seed, schedule=schedule, curve=played.curve)
 
     def _at_equal_comfort(self, outcome: Outcome) -> EqualComfort:
         """Perfect information with the deviation that the run itself caused."""

@@ -12,7 +12,7 @@ from hemma.forecasting.published import PublishedPrices
 from hemma.forecasting.ridge import fitted, needed_past
 from hemma.home import Home, Schedule
 from hemma.results.fingerprint import fingerprint
-from hemma.results.found import Run
+from hemma.results.records import Run
 from hemma.results.store import Store
 from hemma.stages.default import choose_forecast
 from hemma.stages.demonstrate import Expert

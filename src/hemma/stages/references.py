@@ -1,7 +1,7 @@
 """Stage: the methods that are not learned by trial, from the thermostat to perfect information."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import jax
 
@@ -14,7 +14,7 @@ from hemma.optimisation.joint import joint_hmpc
 from hemma.optimisation.nonlinear import nonlinear_optimum
 from hemma.optimisation.nonlinear_programme import casadi_is_installed
 from hemma.results.fingerprint import fingerprint
-from hemma.results.found import MethodResults, PlainOptimum
+from hemma.results.records import Optimum, Run
 from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
 from hemma.stages.judge import CODE, Judge, Played
@@ -30,43 +30,44 @@ class References:
     judge: Judge
     expert: Expert
 
-    def methods(self) -> tuple[MethodResults, ...]:
+    def methods(self) -> dict[str, tuple[Run, ...]]:
         """All of them."""
-        return (*self._plain(), *self._planned(), *self._hindsight())
+        return {**self._plain(), **self._planned(), **self._hindsight()}
 
-    def _plain(self) -> tuple[MethodResults, ...]:
+    def _plain(self) -> dict[str, tuple[Run, ...]]:
         case = self._case
-        return (
-            self._result("Rule", self._mark, lambda: Rule(case.home.hvac, case.home.comfort)),
-            self._result("no battery", self._mark, lambda: ComfortHold(case.home)),
-            self._result(
-                "thresholds",
-                self.expert.mark,
-                lambda: fit_thresholds(self.expert.planning_home, case.training),
+        believed = self.expert.planning_home
+        return {
+            "Rule": self._runs("Rule", self._mark, lambda: Rule(case.home.hvac, case.home.comfort)),
+            "no battery": self._runs("no battery", self.expert.mark, lambda: ComfortHold(believed)),
+            "thresholds": self._runs(
+                "thresholds", self.expert.mark, lambda: fit_thresholds(believed, case.training)
             ),
-        )
+        }
 
-    def _planned(self) -> tuple[MethodResults, ...]:
+    def _planned(self) -> dict[str, tuple[Run, ...]]:
         """Every rolling planner, through the identified network."""
-        return tuple(
-            MethodResults(planner.method, played_by(planner, self.judge, self.expert))
+        return {
+            planner.method: played_by(planner, self.judge, self.expert)
             for planner in planners(self.expert, self.judge.store)
-        )
+        }
 
-    def _hindsight(self) -> tuple[MethodResults, ...]:
+    def _hindsight(self) -> dict[str, tuple[Run, ...]]:
         case, expert, progress = self._case, self.expert, self.judge.store.progress
-        made = [
-            self._result("HMPC", expert.mark, lambda: Schedule(expert.plan(case.test))),
-            self._result("HMPC joint", expert.mark, self._joint),
-            self._result("optimum", self._mark, lambda: Schedule(self.judge.problem.solve().actions)),
-        ]
+        made = {
+            "HMPC": self._runs("HMPC", expert.mark, lambda: Schedule(expert.plan(case.test))),
+            "HMPC joint": self._runs("HMPC joint", expert.mark, self._joint),
+            "optimum": self._runs(
+                "optimum", self._mark, lambda: Schedule(self.judge.problem.solve().actions)
+            ),
+        }
         if not casadi_is_installed():
             progress.noticed("DNLP is left out: it needs CasADi, pip install 'hemma[nlp]'")
-            return tuple(made)
-        dnlp = self._result(
+            return made
+        dnlp = self._runs(
             "DNLP", self._mark, lambda: Schedule(nonlinear_optimum(case.home, case.test).actions)
         )
-        return (*made, dnlp)
+        return {**made, "DNLP": dnlp}
 
     def _joint(self) -> Controller:
         found = joint_hmpc(self.expert.planning_home, self._case.home, self._case.test)
@@ -80,26 +81,26 @@ class References:
     def _mark(self) -> str:
         return fingerprint(STAGE, self._case.mark)
 
-    def _result(self, method: str, mark: str, controller: Callable[[], Controller]) -> MethodResults:
+    def _runs(self, method: str, mark: str, controller: Callable[[], Controller]) -> tuple[Run, ...]:
         def play() -> Sequence[Played]:
             outcome = evaluate(self._case.home, self._case.test, controller(), jax.random.key(0))
             return [Played(outcome)]
 
-        return MethodResults(method, self.judge.judged(method, mark, play))
+        return self.judge.judged(method, mark, play)
 
 
-def plain_optimum(judge: Judge) -> PlainOptimum:
+def plain_optimum(judge: Judge) -> Optimum:
     """Perfect information with the least reachable deviation, and its proof."""
     mark = fingerprint("optimum", CODE, judge.case.mark)
     content = judge.store.kept("optimum", mark)
     if content is not None:
-        return PlainOptimum(**content)
+        return Optimum.model_validate(content)
     found = judge.problem.solve()
-    optimum = PlainOptimum(
+    optimum = Optimum(
         energy_cost=found.cost,
         mean_temperature_deviation=found.deviation / judge.case.test.slots,
         bound=found.bound,
         relative_gap=found.gap,
     )
-    judge.store.keep("optimum", mark, [], asdict(optimum))
+    judge.store.keep("optimum", mark, [], optimum.model_dump(mode="json"))
     return optimum

@@ -23,7 +23,7 @@ from hemma.report.comparison.records import (
     OverHomes,
 )
 from hemma.report.methods import in_order
-from hemma.results.records import Method
+from hemma.results.records import MethodRuns
 from hemma.results.results import RESULTS_FILE, HomeResults, Results, load_results
 
 
@@ -174,7 +174,7 @@ def _improvement(homes: Sequence[_Same], method: str) -> Improvement:
     return probability_of_improvement(pairs, NEGLIGIBLE)
 
 
-def _sample(method: Method) -> Sample:
+def _sample(method: MethodRuns) -> Sample:
     return Sample(tuple(run.regret for run in method.runs), method.is_learned)
 
 

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from hemma.evaluation import Improvement, Summary
+from hemma.evaluation import Improvement, Intervals, Metrics, Summary
 from hemma.report.comparison.disagreements import Disagreement
-from hemma.results.records import Intervals, Metrics
 
 
 @dataclass(frozen=True)

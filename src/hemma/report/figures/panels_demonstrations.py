@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from hemma.evaluation import Intervals, Metrics
 from hemma.report.drawing.canvas import FAINT, legend_above, say_nothing_to_show
 from hemma.report.drawing.rows import above_zero
 from hemma.report.methods import in_order, look_of
 from hemma.report.numbers import decimals, plain
-from hemma.results.records import DemonstrationRuns, Intervals, Metrics
+from hemma.results.records import DemonstrationRuns
 from hemma.results.results import HomeResults
 
 REFERENCES = ("Rule", "PPO", "MaxEnt IRL", "DNLP", "optimum")

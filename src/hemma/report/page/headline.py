@@ -5,7 +5,7 @@ from datetime import datetime
 
 from hemma.report.methods import main_method
 from hemma.report.numbers import degrees, hundredths, money, percent, plain
-from hemma.results.results import HomeResults, Method
+from hemma.results.results import HomeResults, MethodRuns
 
 DEFAULT = "default"
 
@@ -40,7 +40,7 @@ def saved_against_rule(home: HomeResults, method: str) -> float | None:
     return None if rule is None or cost is None or rule <= 0 else (rule - cost) / rule
 
 
-def _title(home: HomeResults, subject: str, method: Method) -> str:
+def _title(home: HomeResults, subject: str, method: MethodRuns) -> str:
     saved, share = saved_against_rule(home, subject), method.mean.share_of_savings
     if saved is None:
         return f"{subject} costs {money(method.mean.energy_cost, home.currency)}"
@@ -48,7 +48,7 @@ def _title(home: HomeResults, subject: str, method: Method) -> str:
     return against if share is None else f"{against} and keeps {percent(share)} of the possible savings"
 
 
-def _cost_sentence(name: str, home: HomeResults, subject: str, method: Method) -> str:
+def _cost_sentence(name: str, home: HomeResults, subject: str, method: MethodRuns) -> str:
     interval = method.interval.energy_cost
     spread = ""
     if interval is not None:
@@ -72,7 +72,7 @@ def _reference_sentence(home: HomeResults, subject: str) -> str:
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
-def _savings_sentence(subject: str, method: Method) -> str:
+def _savings_sentence(subject: str, method: MethodRuns) -> str:
     share, interval = method.mean.share_of_savings, method.interval.share_of_savings
     if share is None:
         return ""
@@ -91,7 +91,7 @@ def _default_sentence(home: HomeResults, subject: str) -> str:
     return f"{cost}." if share is None else f"{cost} and keeps {percent(share)} of them."
 
 
-def _comfort_sentence(home: HomeResults, method: Method) -> str:
+def _comfort_sentence(home: HomeResults, method: MethodRuns) -> str:
     low, high = (plain(bound) for bound in home.comfort_c)
     rule = home.methods.get("Rule")
     beside = f" (Rule: {degrees(rule.mean.mean_temperature_deviation)})" if rule and rule != method else ""

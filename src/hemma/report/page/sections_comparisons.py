@@ -1,10 +1,10 @@
 """The sections of the report that compare the methods of one home."""
 
+from hemma.evaluation import RegretSplit
 from hemma.report.methods import grouped, main_method
 from hemma.report.numbers import money
 from hemma.report.page.markup import body, cell, figure_or, heading, row, table
 from hemma.report.pictures import HomePictures
-from hemma.results.findings import RegretSplit
 from hemma.results.results import HomeResults
 
 REGRET_HEADINGS = ("Method", "Regret", "Not knowing the future", "Identified thermal model", "Policy")

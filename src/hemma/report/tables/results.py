@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, decimals, degrees, fine, hundredths, money, percent, seconds
-from hemma.results.records import Method
+from hemma.results.records import MethodRuns
 from hemma.results.results import HomeResults, Results, load_results
 
 TABLE_HEADINGS = (
@@ -102,7 +102,7 @@ def results_table(source: Path | Results) -> list[TableRow]:
     ]
 
 
-def _row(name: str, home: HomeResults, title: str, method: Method) -> TableRow:
+def _row(name: str, home: HomeResults, title: str, method: MethodRuns) -> TableRow:
     mean, interval = method.mean, method.interval
 
     cost = Notation(lambda value: money(value, home.currency), lambda value: decimals(value, 2))
@@ -133,7 +133,7 @@ def _cell(mean: float | None, interval: tuple[float, float] | None, notation: No
     return Cell(notation.full(mean), f"[{low}, {high}]")
 
 
-def _interquartile_cell(method: Method, currency: str) -> Cell:
+def _interquartile_cell(method: MethodRuns, currency: str) -> Cell:
     middle = method.interquartile_mean
     if len(method.runs) < 2:
         return Cell(DASH)
@@ -141,7 +141,7 @@ def _interquartile_cell(method: Method, currency: str) -> Cell:
     return Cell(money(middle.energy_cost, currency), share)
 
 
-def _worst_cell(method: Method, currency: str) -> Cell:
+def _worst_cell(method: MethodRuns, currency: str) -> Cell:
     worst = method.worst_run
     if worst is None:
         return Cell(DASH)

@@ -6,7 +6,9 @@ from functools import partial
 
 import numpy as np
 
-from hemma.results.found import ParetoPoint, Run
+from hemma.results.findings import ParetoPoint
+from hemma.results.records import Run
+from hemma.results.summary import method_runs
 from hemma.stages.explicit import Sweep
 from hemma.stages.judge import Judge
 from hemma.stages.play import play
@@ -34,7 +36,15 @@ class Pareto:
         for share in np.linspace(0.0, 1.0, BUDGETS) ** 2:
             found = problem.solve(float(least + share * max(largest - least, 0.0)))
             mean = found.deviation / slots
-            points.append(ParetoPoint("optimum", "total deviation budget", found.budget, found.cost, mean, 1))
+            points.append(
+                ParetoPoint(
+                    series="optimum",
+                    parameter="total deviation budget",
+                    value=found.budget,
+                    energy_cost=found.cost,
+                    mean_temperature_deviation=mean,
+                )
+            )
         return tuple(points)
 
     def comfort_prices(self, sweep: Sweep) -> tuple[ParetoPoint, ...]:
@@ -63,7 +73,13 @@ class Pareto:
 
 
 def _point(series: str, parameter: str, value: float, runs: Sequence[Run]) -> ParetoPoint:
-    cost = float(np.mean([run.metrics.energy_cost for run in runs]))
-    deviation = float(np.mean([run.metrics.mean_temperature_deviation for run in runs]))
-    schedules = tuple(run.schedule for run in runs)
-    return ParetoPoint(series, parameter, value, cost, deviation, len(runs), schedules)
+    mean = method_runs(runs).mean
+    return ParetoPoint(
+        series=series,
+        parameter=parameter,
+        value=value,
+        energy_cost=mean.energy_cost,
+        mean_temperature_deviation=mean.mean_temperature_deviation,
+        runs=len(runs),
+        schedules=tuple(run.schedule for run in runs if run.schedule is not None),
+    )

@@ -1,7 +1,7 @@
 """Stage: which controller this home should have, from its training days alone."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 
 import jax
@@ -17,7 +17,7 @@ from hemma.forecasting.ridge import fitted, needed_past
 from hemma.home import Controller
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.results.fingerprint import code, fingerprint
-from hemma.results.found import JudgedMethod, Recommendation
+from hemma.results.records import JudgedMethod, Recommendation
 from hemma.results.store import Store
 from hemma.stages.default import Choice
 from hemma.stages.demonstrate import Expert
@@ -56,14 +56,14 @@ class Tryout:
         content = self.store.kept(STAGE, mark)
         if content is None:
             found = self._found()
-            self.store.keep(STAGE, mark, [], {"found": None if found is None else asdict(found)})
+            judged = None if found is None else found.model_dump(mode="json")
+            self.store.keep(STAGE, mark, [], {"found": judged})
             return found
         found = content["found"]
         if found is None:
             return None
         self.store.progress.reused(STAGE, found["method"])
-        judged = tuple(JudgedMethod(**one) for one in found["judged"])
-        return Recommendation(found["method"], found["days"], judged)
+        return Recommendation.model_validate(found)
 
     def _mark(self) -> str:
         imitator = None if self.imitator is None else self.imitator.mark
@@ -162,7 +162,13 @@ def recommend(costs: dict[str, Float[np.ndarray, "days"]], deviations: dict[str,
         excess = days - costs[best]
         error = float(np.std(excess, ddof=1) / np.sqrt(len(excess))) if len(excess) > 1 else 0.0
         judged.append(
-            JudgedMethod(method, float(np.mean(days)), float(np.mean(excess)), error, deviations[method])
+            JudgedMethod(
+                method=method,
+                daily_cost=float(np.mean(days)),
+                excess=float(np.mean(excess)),
+                standard_error=error,
+                mean_temperature_deviation=deviations[method],
+            )
         )
     chosen = next(one.method for one in judged if one.excess <= one.standard_error)
-    return Recommendation(chosen, len(costs[best]), tuple(judged))
+    return Recommendation(method=chosen, days=len(costs[best]), judged=tuple(judged))

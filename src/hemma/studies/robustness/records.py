@@ -1,50 +1,45 @@
-"""``robustness.json`` as typed values."""
+"""``robustness.json``: what the faults do to each method, as it is written and as it is read."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Generic, Literal, TypeVar
 
 from pydantic import Field
 
+from hemma.evaluation import Measures
+from hemma.record import Number, Range, Record
+from hemma.results.ledger import INTERVAL_KIND
 from hemma.results.reading import read_record
-from hemma.results.records import Number, Period, Range, Record
+from hemma.results.records import Period
 
 ROBUSTNESS_FILE = "robustness.json"
 
 
-class FaultRun(Record):
-    """One run of a method under one fault."""
+Value = TypeVar("Value")
+
+
+class FaultMeasures(Measures[Value], Generic[Value]):
+    """The metrics of the results table, and the largest deviation."""
+
+    max_temperature_deviation: Value | None = None
+    """[degC]."""
+
+
+class FaultRun(FaultMeasures[Number]):
+    """One run of a method under one fault; perfect information is that of the same changed home."""
 
     seed: int | None = None
-    share_of_savings: Number = None
-    mean_temperature_deviation: Number = None
-    max_temperature_deviation: Number = None
     limited: int | None = None
+    """Slots in which the safety layer limited an action; None for planners, which it does not watch."""
     comfort_overrides: int | None = None
-
-
-class Means(Record):
-    """Over the runs of a method."""
-
-    energy_cost: Number = None
-    mean_temperature_deviation: Number = None
-    max_temperature_deviation: Number = None
-    share_of_savings: Number = None
-    regret: Number = None
-
-
-class Ranges(Record):
-    """The 95 % intervals of the means."""
-
-    share_of_savings: Range = None
-    mean_temperature_deviation: Range = None
+    """Slots in which it took the HVAC over."""
 
 
 class FaultMethod(Record):
     """A method under one fault."""
 
     runs: tuple[FaultRun, ...] = Field(min_length=1)
-    mean: Means
-    interval: Ranges = Ranges()
+    mean: FaultMeasures[Number]
+    interval: FaultMeasures[Range] = FaultMeasures[Range]()
 
     @property
     def interventions(self) -> float | None:
@@ -55,27 +50,35 @@ class FaultMethod(Record):
         return sum(counts) / len(counts)
 
 
-class FaultTable(Record):
+class MetFault(Record):
     """All methods under one fault."""
 
     fault: str
     meaning: str
     repaired_readings: int
+    """Slots in which a reading was missing and the last one was taken."""
     methods: dict[str, FaultMethod]
 
 
 class RobustHome(Record):
     """All faults in one home."""
 
+    traces_sha256: str = ""
     currency: str
     test: Period
-    faults: tuple[FaultTable, ...] = Field(min_length=1)
+    faults: tuple[MetFault, ...] = Field(min_length=1)
 
 
 class Robustness(Record):
     """The whole file."""
 
-    version: Literal[1] = Field(alias="schema")
+    version: Literal[1] = Field(default=1, alias="schema")
+    hemma: str = ""
+    code: str = ""
+    command: str = "hemma robustness"
+    settings: dict[str, Any] = Field(default_factory=dict)
+    interval_kind: str = INTERVAL_KIND
+    seed_of_faults: int = 0
     homes: dict[str, RobustHome] = Field(min_length=1)
 
     @property

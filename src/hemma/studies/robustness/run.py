@@ -1,16 +1,14 @@
 """``hemma robustness``: train what is not trained yet, and let every method meet every fault."""
 
-import json
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import hemma
-from hemma.checkpoint import write_atomically
-from hemma.evaluation import summarise
-from hemma.results.document import CODE, INTERVAL_KIND, bounds
+from hemma.errors import HemmaError
+from hemma.results.ledger import CODE
 from hemma.results.progress import Progress, Silence
+from hemma.results.reading import write_record
 from hemma.results.results import load_results
 from hemma.results.store import Store
 from hemma.settings.experiment import DataEfficiency
@@ -23,23 +21,14 @@ from hemma.stages.job import Job, require_different_names, require_writable
 from hemma.stages.lessons import imitations, lessons
 from hemma.stages.planners import planners
 from hemma.stages.train import Trained, train_lesson, train_lessons
-from hemma.studies.robustness.records import ROBUSTNESS_FILE
+from hemma.studies.robustness.records import ROBUSTNESS_FILE, RobustHome, Robustness
 from hemma.studies.robustness.report import write_robustness_report
 from hemma.studies.robustness.stored import stored_job, stored_trial, tell_what_differs
-from hemma.studies.robustness.trial import SEED, FaultResults, FaultRun, Trial
-
-SCHEMA = 1
-SUMMARISED = (
-    "energy_cost",
-    "mean_temperature_deviation",
-    "max_temperature_deviation",
-    "share_of_savings",
-    "regret",
-)
+from hemma.studies.robustness.trial import SEED, Trial
 
 
-def run_faults(job: Job, progress: Progress | None = None) -> dict[str, Any]:
-    """All homes of the job; the content of ``robustness.json``.
+def run_faults(job: Job, progress: Progress | None = None) -> Robustness:
+    """All homes of the job.
 
     What an earlier command left in the folder is used, the rest is trained; the same call goes on where it
     stopped.
@@ -54,8 +43,8 @@ def run_faults(job: Job, progress: Progress | None = None) -> dict[str, Any]:
 
 def run_stored_faults(
     folder: Path, traces: Path | None, command: str, progress: Progress | None = None
-) -> dict[str, Any]:
-    """The homes and methods that a folder holds, nothing trained; the content of ``robustness.json``.
+) -> Robustness:
+    """The homes and methods that a folder holds, nothing trained.
 
     Raises ``HemmaError`` where the folder has nothing to measure.
     """
@@ -68,25 +57,31 @@ def run_stored_faults(
     return content
 
 
-def measure_faults(job: Job, trials: Sequence[Trial]) -> dict[str, Any]:
+def measure_faults(job: Job, trials: Sequence[Trial]) -> Robustness:
     """Let the methods of every home meet every fault, and those of the next home where there are several."""
-    content: dict[str, Any] = {
-        "schema": SCHEMA,
-        "hemma": hemma.__version__,
-        "code": CODE,
-        "command": job.command,
-        "settings": outside(job.experiment),
-        "interval_kind": INTERVAL_KIND,
-        "seed_of_faults": SEED,
-        "homes": {},
-    }
+    homes: dict[str, RobustHome] = {}
+    found: Robustness | None = None
     for trial, following in zip(trials, [*trials[1:], *trials[:1]], strict=True):
         case, neighbour = trial.expert.case, None if following is trial else following
-        content["homes"][case.name] = _home(case, trial.results(neighbour))
-        text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
-        write_atomically(job.folder / ROBUSTNESS_FILE, (text + "\n").encode())
+        homes[case.name] = RobustHome(
+            traces_sha256=case.traces.sha256,
+            currency=case.experiment.currency,
+            test=case.test_period,
+            faults=trial.results(neighbour),
+        )
+        found = Robustness(
+            hemma=hemma.__version__,
+            code=CODE,
+            command=job.command,
+            settings=outside(job.experiment),
+            seed_of_faults=SEED,
+            homes=homes,
+        )
+        write_record(job.folder / ROBUSTNESS_FILE, found)
+    if found is None:
+        raise HemmaError("robustness: expected at least one home, got none; name one with --home")
     write_robustness_report(job.folder)
-    return content
+    return found
 
 
 def _trained(case: Case, store: Store) -> Trial:
@@ -108,33 +103,3 @@ def learned_methods(expert: Expert, store: Store) -> dict[str, Trained]:
         sweep = sweep_comfort_price(expert, store, method)
         trained[method] = train_lesson(explicit_lesson(expert, store, method, sweep.chosen), store)
     return trained
-
-
-def _home(case: Case, found: Sequence[FaultResults]) -> dict[str, Any]:
-    return {
-        "traces_sha256": case.traces.sha256,
-        "currency": case.experiment.currency,
-        "test": {"start": case.parts.test.time_stamps()[0], "slots": case.test.slots},
-        "faults": [
-            {
-                "fault": one.fault,
-                "meaning": one.meaning,
-                "repaired_readings": one.repaired_readings,
-                "methods": _methods(one.runs),
-            }
-            for one in found
-        ],
-    }
-
-
-def _methods(runs: Sequence[FaultRun]) -> dict[str, Any]:
-    content = {}
-    for method in dict.fromkeys(run.method for run in runs):
-        own = [run for run in runs if run.method == method]
-        summaries = {name: summarise([getattr(run, name) for run in own]) for name in SUMMARISED}
-        content[method] = {
-            "runs": [{name: value for name, value in asdict(run).items() if name != "method"} for run in own],
-            "mean": {name: summary.mean for name, summary in summaries.items()},
-            "interval": {name: bounds(summary.interval) for name, summary in summaries.items()},
-        }
-    return content

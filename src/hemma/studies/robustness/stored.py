@@ -3,13 +3,11 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from hemma.data import AUSTIN2021_HOMES, Traces
 from hemma.errors import HemmaError
-from hemma.results.found import RESULTS_FILE
 from hemma.results.progress import Progress
-from hemma.results.results import Results, load_results
+from hemma.results.results import RESULTS_FILE, Results, load_results
 from hemma.results.store import Store
 from hemma.rl.loading import load_controllers
 from hemma.settings.experiment import DataEfficiency, Experiment
@@ -21,6 +19,7 @@ from hemma.stages.job import Job
 from hemma.stages.load import embedded_homes, own_home
 from hemma.stages.planners import planners
 from hemma.stages.train import Trained
+from hemma.studies.robustness.records import Robustness
 from hemma.studies.robustness.trial import Trial
 
 SAME_COST = 1e-3
@@ -61,18 +60,18 @@ def stored_trial(case: Case, store: Store) -> Trial:
     return Trial(expert, store, trained, planners(expert, store))
 
 
-def tell_what_differs(results: Results, content: Any, progress: Progress) -> None:
+def tell_what_differs(results: Results, found: Robustness, progress: Progress) -> None:
     """Say which runs cost something else where nothing is wrong than the folder's results tell."""
-    for name, home in content["homes"].items():
-        nothing = home["faults"][0]["methods"]
+    for name, home in found.homes.items():
+        nothing = home.faults[0].methods
         for method, one in results.homes[name].methods.items():
             told = {run.seed: run.energy_cost for run in one.runs}
-            for run in nothing[method]["runs"] if method in nothing else ():
-                usual, cost = told.get(run["seed"]), run["energy_cost"]
-                if usual is None or not math.isclose(cost, usual, rel_tol=SAME_COST):
-                    seed = "" if run["seed"] is None else f" with seed {run['seed']}"
+            for run in nothing[method].runs if method in nothing else ():
+                usual, cost = told.get(run.seed), run.energy_cost
+                if usual is None or cost is None or not math.isclose(cost, usual, rel_tol=SAME_COST):
+                    seed = "" if run.seed is None else f" with seed {run.seed}"
                     progress.noticed(
-                        f"{name}: {method}{seed} costs {cost:.4f} where nothing is wrong, {usual} in "
+                        f"{name}: {method}{seed} costs {cost} where nothing is wrong, {usual} in "
                         f"{RESULTS_FILE}; it was made anew since, or the safety layer intervened"
                     )
 

@@ -1,6 +1,7 @@
 """The table again under faults: what was trained under good conditions meets bad ones."""
 
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -20,14 +21,17 @@ from hemma.home import Controller
 from hemma.home.precision import in_double, in_numpy
 from hemma.methods.pupils import PUPILS
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
+from hemma.record import Number, Range
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
+from hemma.results.summary import intervals, means, summarised
 from hemma.rl.policies.scaling import Context
 from hemma.stages.demonstrate import Expert
 from hemma.stages.planners import Planner
 from hemma.stages.sight import informed, sight_of
 from hemma.stages.train import Trained
 from hemma.studies.robustness.faults import Fault, FaultSettings, faults
+from hemma.studies.robustness.records import FaultMeasures, FaultMethod, FaultRun, MetFault
 from hemma.studies.robustness.scenes import Scene, scene
 
 STAGE = "robustness"
@@ -42,39 +46,6 @@ SEED = 0
 
 
 @dataclass(frozen=True)
-class FaultRun:
-    """One run of a method under one fault."""
-
-    method: str
-    seed: int | None
-    energy_cost: float
-    """Sum of X1 + X2 [currency]."""
-    mean_temperature_deviation: float
-    """[degC]."""
-    max_temperature_deviation: float
-    """[degC]."""
-    share_of_savings: float | None
-    """At equal comfort, of what perfect information saves in the same changed home."""
-    regret: float
-    """[currency]."""
-    limited: int | None
-    """Slots in which the safety layer limited an action; None for planners, which it does not watch."""
-    comfort_overrides: int | None
-    """Slots in which it took the HVAC over."""
-
-
-@dataclass(frozen=True)
-class FaultResults:
-    """All methods under one fault."""
-
-    fault: str
-    meaning: str
-    repaired_readings: int
-    """Slots in which a reading was missing and the last one was taken."""
-    runs: tuple[FaultRun, ...]
-
-
-@dataclass(frozen=True)
 class Trial:
     """Lets the methods of one home meet every fault in its test period."""
 
@@ -85,7 +56,7 @@ class Trial:
     planners: tuple[Planner, ...]
     """Those of the results table; the causal ones take part."""
 
-    def results(self, neighbour: "Trial | None" = None) -> tuple[FaultResults, ...]:
+    def results(self, neighbour: "Trial | None" = None) -> tuple[MetFault, ...]:
         """One entry a fault, nothing wrong first, what a ``neighbour``'s methods do in this home last."""
         met: list[tuple[Fault, Trial]] = [(fault, self) for fault in faults(self._settings)]
         if neighbour is not None:
@@ -109,7 +80,7 @@ class Trial:
         planned = [(planner.method, planner.facts) for planner in self.planners]
         return [self.expert.mark, learned, planned, self.expert.case.experiment.forecast_horizon]
 
-    def _kept(self, fault: Fault, actor: "Trial") -> FaultResults:
+    def _kept(self, fault: Fault, actor: "Trial") -> MetFault:
         layers = code(
             "evaluation", "forecasting", "optimisation", "control", "rl", "home", "stages", "studies"
         )
@@ -119,25 +90,31 @@ class Trial:
         if content is None:
             case = self.expert.case
             now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
-            met = FaultResults(fault.name, fault.meaning, now.repaired, actor.runs(now))
-            content = asdict(met)
-            self.store.keep(product, mark, [], content)
-        return FaultResults(**{**content, "runs": tuple(FaultRun(**run) for run in content["runs"])})
+            met = MetFault(
+                fault=fault.name,
+                meaning=fault.meaning,
+                repaired_readings=now.repaired,
+                methods={method: _together(runs) for method, runs in actor.runs(now).items()},
+            )
+            self.store.keep(product, mark, [], met.model_dump(mode="json"))
+            return met
+        return MetFault.model_validate(content)
 
-    def runs(self, now: Scene) -> tuple[FaultRun, ...]:
+    def runs(self, now: Scene) -> dict[str, list[FaultRun]]:
         """What the methods that learned in this home do in a scene, be it of another one."""
         problem = optimum_problem(now.home, now.exogenous, disturbances=now.readings.disturbance)
-        runs: list[FaultRun] = []
-        for method, controller in self._plain.items():
-            runs.append(self._watched(method, None, controller, now, problem))
+        runs = {
+            method: [self._watched(None, controller, now, problem)]
+            for method, controller in self._plain.items()
+        }
         causal = [planner for planner in self.planners if planner.is_causal]
-        runs += [self._planned(planner, now, problem) for planner in causal]
+        runs |= {planner.method: [self._planned(planner, now, problem)] for planner in causal}
         for method, one in self.trained.items():
             controllers = informed(one.controllers, self._seen(method, now))
             for seed in range(min(one.controllers.scaler.centre.shape[0], self._settings.runs)):
                 controller = jax.tree.map(lambda x, seed=seed: x[seed], controllers)
-                runs.append(self._watched(method, seed, controller, now, problem))
-        return tuple(runs)
+                runs.setdefault(method, []).append(self._watched(seed, controller, now, problem))
+        return runs
 
     def _seen(self, method: str, now: Scene) -> Context:
         """What a learned method sees besides the paper's state, as it is read."""
@@ -154,7 +131,7 @@ class Trial:
         }
 
     def _watched(
-        self, method: str, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
+        self, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
     ) -> FaultRun:
         safety = SafetyLayer(self.expert.planning_home, self._settings.margin, self._settings.adapts)
         with jax.enable_x64(True):
@@ -162,7 +139,7 @@ class Trial:
             watched = in_numpy(_replayed(*inputs))
         changes = watched.interventions
         counts = (int(np.sum(np.asarray(changes.limited))), int(np.sum(np.asarray(changes.comfort))))
-        return _judged(method, seed, outcome_of(watched.step), problem, counts)
+        return _judged(seed, outcome_of(watched.step), problem, counts)
 
     def _planned(self, planner: Planner, now: Scene, problem: OptimumProblem) -> FaultRun:
         case = self.expert.case
@@ -181,7 +158,7 @@ class Trial:
             now.readings,
             adapts=self._settings.adapts,
         )
-        return _judged(planner.method, None, outcome_of(path.steps), problem, None)
+        return _judged(None, outcome_of(path.steps), problem, None)
 
 
 @eqx.filter_jit
@@ -190,20 +167,24 @@ def _replayed(home, exogenous, controller, readings, safety, key) -> WatchedStep
 
 
 def _judged(
-    method: str, seed: int | None, outcome: Outcome, problem: OptimumProblem, counts: tuple[int, int] | None
+    seed: int | None, outcome: Outcome, problem: OptimumProblem, counts: tuple[int, int] | None
 ) -> FaultRun:
     """Its measures; perfect information knows the changed home, and what will disturb it."""
     budget = outcome.total_deviation
     reference = EqualComfort(problem.solve(budget).cost, problem.solve(budget, battery=False).cost)
-    metrics = measure(outcome, reference)
     return FaultRun(
-        method=method,
-        seed=seed,
-        energy_cost=metrics.energy_cost,
-        mean_temperature_deviation=metrics.mean_temperature_deviation,
+        **measure(outcome, reference).model_dump(),
         max_temperature_deviation=float(np.max(outcome.temperature_deviation)),
-        share_of_savings=metrics.share_of_savings,
-        regret=metrics.regret,
+        seed=seed,
         limited=None if counts is None else counts[0],
         comfort_overrides=None if counts is None else counts[1],
+    )
+
+
+def _together(runs: Sequence[FaultRun]) -> FaultMethod:
+    summaries = summarised(runs, FaultMeasures)
+    return FaultMethod(
+        runs=tuple(runs),
+        mean=means(FaultMeasures[Number], summaries),
+        interval=intervals(FaultMeasures[Range], summaries),
     )

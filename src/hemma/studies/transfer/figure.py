@@ -8,7 +8,7 @@ from hemma.report.drawing.canvas import FAINT, GRID, INK, new_figure
 from hemma.report.drawing.rows import above_zero
 from hemma.report.methods import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
 from hemma.report.numbers import percent
-from hemma.results.records import Method
+from hemma.results.records import MethodRuns
 from hemma.studies.transfer.records import Transfer
 
 LOWEST = -0.25
@@ -65,7 +65,7 @@ def _look(number: int) -> Look:
     return _LOOKS[number % len(_LOOKS)]
 
 
-def _draw(left: Axes, right: Axes, place: float, method: Method, look: Look) -> None:
+def _draw(left: Axes, right: Axes, place: float, method: MethodRuns, look: Look) -> None:
     share, deviation = method.mean.share_of_savings, method.mean.mean_temperature_deviation
     if share is not None and share < LOWEST:
         left.text(LOWEST, place, f"◂ {percent(share)}", va="center", fontsize=6.5, color=look.colour)

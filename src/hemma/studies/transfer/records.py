@@ -1,43 +1,57 @@
-"""``transfer.json`` as typed values, and its table."""
+"""``transfer.json``: what each method made of each changed home, as it is written and as it is read."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
+from hemma.record import Number, Range, Record
+from hemma.results.ledger import INTERVAL_KIND
 from hemma.results.reading import read_record
-from hemma.results.records import Method, Number, Period, Range, Record
+from hemma.results.records import MethodRuns, Period
 
 TRANSFER_FILE = "transfer.json"
 
 
-class Paired(Record):
+class SeedPairs(Record):
     """How much more of the savings a run of one method keeps than the run of another with its seed."""
 
     method: str
     over: str
+    metric: str = "share_of_savings"
+    differences: tuple[Number, ...] = ()
+    """By seed."""
     mean: Number = None
     interval: Range = None
 
 
-class Place(Record):
-    """All methods in one home."""
+class ChangedHome(Record):
+    """All methods in one changed home."""
 
     meaning: str
-    methods: dict[str, Method]
-    paired: tuple[Paired, ...] = ()
+    learned_from: str = ""
+    """Start of the days that are learned from."""
+    methods: dict[str, MethodRuns]
+    paired: tuple[SeedPairs, ...] = ()
 
 
 class Transfer(Record):
     """The whole file."""
 
-    version: Literal[1] = Field(alias="schema")
+    version: Literal[1] = Field(default=1, alias="schema")
+    hemma: str = ""
+    code: str = ""
+    command: str = "hemma transfer"
+    settings: dict[str, Any] = Field(default_factory=dict)
+    interval_kind: str = INTERVAL_KIND
     home: str
+    source: str = ""
     currency: str
     days: int
     """How many days each method learned from."""
     measured: Period
-    places: dict[str, Place] = Field(min_length=1)
+    places: dict[str, ChangedHome] = Field(min_length=1)
+    """By the name of the change."""
 
     @property
     def methods(self) -> list[str]:

@@ -7,7 +7,7 @@ from hemma.checkpoint import write_atomically
 from hemma.report.drawing.canvas import drawing_style, save
 from hemma.report.numbers import degrees, fine, hundredths, percent
 from hemma.studies.transfer.figure import transfer_figure
-from hemma.studies.transfer.records import Place, Transfer, load_transfer
+from hemma.studies.transfer.records import ChangedHome, Transfer, load_transfer
 from hemma.studies.transfer.reward_figure import BatteryMap, ComfortMap, battery_figure, comfort_figure
 
 FIGURES, TABLE_FILE = "figures", "transfer.md"
@@ -52,7 +52,7 @@ def paired_lines(found: Transfer) -> list[str]:
     ]
 
 
-def _rows(name: str, place: Place) -> list[tuple[str, ...]]:
+def _rows(name: str, place: ChangedHome) -> list[tuple[str, ...]]:
     return [
         (
             name,

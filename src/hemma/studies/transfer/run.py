@@ -14,18 +14,20 @@ import jax
 from hemma.data import Traces
 from hemma.evaluation import evaluate_stacked
 from hemma.results.fingerprint import fingerprint
-from hemma.results.found import MethodResults
 from hemma.results.progress import Progress, Silence
+from hemma.results.reading import json_content, write_record
+from hemma.results.records import MethodRuns
 from hemma.results.store import Store
+from hemma.results.summary import method_runs
 from hemma.rl.policies.policy import PolicyController
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Expert
-from hemma.stages.identify import Identification, identify
+from hemma.stages.identify import IdentifiedBuilding, identify
 from hemma.stages.judge import Judge, Played
 from hemma.stages.rewards import kept_rewards
 from hemma.stages.train import Lesson, Trained, train_lesson, train_lessons
 from hemma.studies.transfer.changes import CHANGES, Change, Place, places
-from hemma.studies.transfer.document import Measured, transfer_document, write_transfer
+from hemma.studies.transfer.document import Measured, transfer_record
 from hemma.studies.transfer.lessons import (
     Origin,
     Settled,
@@ -38,6 +40,7 @@ from hemma.studies.transfer.lessons import (
     reward_lessons,
 )
 from hemma.studies.transfer.maps import draw_maps
+from hemma.studies.transfer.records import TRANSFER_FILE
 from hemma.studies.transfer.report import write_transfer_report
 
 ADAPTED, REWARD, GROUND = "adapted by r", "PPO on r", "PPO on g"
@@ -74,13 +77,13 @@ def transfer(job: TransferJob, progress: Progress | None = None) -> dict[str, An
     columns = [*_carried(origin, len(settled)), *_paid(settled, origin, store), _Column(ANEW, (None, *anew))]
     frozen = reward_lessons(settled, origin)
     measured = [
-        Measured(one.place, tuple(_measured(_There(one, lesson), columns, number)))
+        Measured(one.place, dict(_measured(_There(one, lesson), columns, number)))
         for number, (one, lesson) in enumerate(zip(settled, frozen, strict=True))
     ]
-    content = transfer_document(job.command, job.experiment, measured)
-    write_transfer(job.folder, content)
+    found = transfer_record(job.command, job.experiment, measured)
+    write_record(job.folder / TRANSFER_FILE, found)
     write_transfer_report(job.folder)
-    return content
+    return json_content(found)
 
 
 @dataclass(frozen=True)
@@ -125,7 +128,7 @@ def _paid(settled: list[Settled], origin: Origin, store: Store) -> list[_Column]
     return [_Column(method, train_lessons(made, store)) for method, made in lessons.items()]
 
 
-def _measured(there: _There, columns: Sequence[_Column], number: int) -> Iterator[MethodResults]:
+def _measured(there: _There, columns: Sequence[_Column], number: int) -> Iterator[tuple[str, MethodRuns]]:
     """What each method does in the place of that number."""
     judge = Judge(there.settled.place.case, there.settled.store)
     for column in columns:
@@ -134,7 +137,7 @@ def _measured(there: _There, columns: Sequence[_Column], number: int) -> Iterato
             controllers = column.controllers(trained, there.frozen)
             mark = fingerprint("transfer", there.frozen.mark, trained.mark)
             play = partial(_play, there.settled, controllers, trained.seconds)
-            yield MethodResults(column.method, judge.judged(column.method, mark, play))
+            yield column.method, method_runs(judge.judged(column.method, mark, play))
 
 
 def _play(settled: Settled, controllers: PolicyController, seconds: float) -> list[Played]:
@@ -151,7 +154,7 @@ def _settled(all_places: tuple[Place, ...], store: Store) -> list[Settled]:
     return [_settle(place, old, store) for place in all_places]
 
 
-def _settle(place: Place, old: Identification, store: Store) -> Settled:
+def _settle(place: Place, old: IdentifiedBuilding, store: Store) -> Settled:
     change = place.change
     own = Store(store.folder, f"{store.home}/{change.slug}", store.progress)
     expert = Expert(place.case, identify(place.case, own) if change.is_identified else old)
