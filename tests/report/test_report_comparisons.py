@@ -12,11 +12,12 @@ from hemma.report import write_report
 from hemma.report.drawing.canvas import drawing_style, new_figure
 from hemma.report.drawing.labels import Label, place_labels
 from hemma.report.drawing.rows import method_rows
-from hemma.report.figures.panels_homes import homes_figure
-from hemma.report.figures.panels_improvement import comparison_of, improvement_figure
-from hemma.report.figures.panels_pareto import pareto_figure, sweeps_of
-from hemma.report.figures.panels_regret import regret_figure
-from hemma.report.page.overview import differences_of, worst_over_homes
+from hemma.report.figures.cost_and_comfort import pareto_figure, sweeps_of
+from hemma.report.figures.probability_of_improvement import comparison_of, improvement_figure
+from hemma.report.figures.regret import regret_figure
+from hemma.report.figures.share_of_savings import homes_figure
+from hemma.report.tables.aggregate import differences_of, worst_over_homes
+from hemma.report.tables.cells import Cell
 from hemma.results.findings import Improvement, PairedDifference, ParetoPoint
 from hemma.results.results import HomeResults, Results, load_results
 
@@ -183,13 +184,13 @@ def test_shares_far_below_zero_are_written(two_homes):
 
 
 def test_the_worst_run_over_homes_is_found_with_its_home_and_seed(two_homes):
-    worst = worst_over_homes(two_homes, "PPO")
-    assert worst is not None
     runs = {
         (n, r.seed): r.share_of_savings for n, h in two_homes.homes.items() for r in h.methods["PPO"].runs
     }
-    assert (worst.home, worst.run.seed) == min(runs, key=lambda key: runs[key])
-    assert worst_over_homes(two_homes, "DNLP") is None
+    home, seed = min(runs, key=lambda key: runs[key])
+    worst = worst_over_homes(two_homes, "PPO")
+    assert worst == Cell(f"{100 * runs[home, seed]:.1f}\u00a0%", f"{home}, seed {seed}")
+    assert worst_over_homes(two_homes, "DNLP").value == "–"
 
 
 def test_the_main_method_against_the_others_home_by_home():
@@ -216,6 +217,8 @@ def test_several_homes_begin_with_all_methods_over_homes(tmp_path):
     assert f"{100 * mean:.1f}\u00a0%" in page
     assert "HA-1 against the others, home by home" in page
     assert "2 of 2 homes" in page
+    assert "leaves out all that they share: weather, prices, building" in page
+    assert "other homes" not in page
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     assert {"homes-share-of-savings.svg", "homes-probability-of-improvement.png"} <= names
     del content["aggregate"]

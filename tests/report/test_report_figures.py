@@ -13,14 +13,20 @@ from synthetic_results import save_results, write_results
 
 from hemma.evaluation import Intervals
 from hemma.report import write_report
-from hemma.report.drawing.canvas import drawing_style, new_figure, save
-from hemma.report.figures.panels_curves import thinned
-from hemma.report.figures.panels_demonstrations import draw_cost_by_length, draw_deviation_by_length
-from hemma.report.figures.panels_methods import draw_costs, draw_deviations
-from hemma.report.figures.panels_time import draw_battery_level, draw_indoor_temperature
+from hemma.report.drawing.canvas import drawing_style, new_figure, save, single
+from hemma.report.drawing.spread import thinned
+from hemma.report.figures import FIGURES
+from hemma.report.figures.figure import HomeFigure, Section, Words
+from hemma.report.figures.panels.battery_level import draw_battery_level
+from hemma.report.figures.panels.cost_by_demonstrations import draw_cost_by_length
+from hemma.report.figures.panels.deviation_by_demonstrations import draw_deviation_by_length
+from hemma.report.figures.panels.energy_cost import draw_costs
+from hemma.report.figures.panels.indoor_temperature import draw_indoor_temperature
+from hemma.report.figures.panels.temperature_deviation import draw_deviations
 from hemma.report.methods import GROUPS, look_of
-from hemma.report.pictures import HomeSeries, read_series
+from hemma.report.pictures import LIST_FILE
 from hemma.report.series import SeriesReader
+from hemma.report.subject import HomeSubject, read_subject
 from hemma.results.records import DemonstrationRuns
 from hemma.results.results import HomeResults, load_results
 
@@ -38,8 +44,8 @@ def home(written) -> HomeResults:
 
 
 @pytest.fixture(scope="module")
-def series(written, home) -> HomeSeries:
-    return read_series(SeriesReader(written.folder), "austin2021-1", home)
+def series(written, home) -> HomeSubject:
+    return read_subject(SeriesReader(written.folder), "austin2021-1", home)
 
 
 def _axes():
@@ -53,7 +59,8 @@ def _line(axes, label):
 
 def test_every_figure_is_written_as_png_and_svg(written):
     figures = written.folder / "figures"
-    assert {path.name for path in figures.iterdir()} == {f"{n}.{e}" for n in NAMES for e in ("png", "svg")}
+    names = {f"{n}.{e}" for n in NAMES for e in ("png", "svg")}
+    assert {path.name for path in figures.iterdir()} == names | {LIST_FILE}
     for name in NAMES:
         assert (figures / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert "<svg" in (figures / f"{name}.svg").read_text(encoding="utf-8")
@@ -222,3 +229,55 @@ def test_several_homes_have_figures_each_under_its_own_safe_name(tmp_path):
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     assert {"results.png", "a_b-1-results.png", "a_b-2-results.png", "a_b-2-energy-cost.svg"} <= names
     assert page.index("The homes at a glance") < page.index("Results on a b") < page.index("Results on a_b")
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_figures_of_an_earlier_larger_run_are_removed_and_nothing_else(small):
+    folder, content = small
+    write_report(folder)
+    figures = folder / "figures"
+    outside = folder / "outside.svg"
+    strangers = (figures / "robustness.svg", figures / "mine.png", outside)
+    for path in strangers:
+        path.write_text("not of the report")
+    with (figures / LIST_FILE).open("a") as file:
+        file.write("../outside.svg\nnotes.txt\n")
+    assert (figures / "regret.svg").is_file()
+    del content["homes"]["home"]["regret"]
+    save_results(folder, content)
+    write_report(folder)
+    assert not (figures / "regret.svg").exists()
+    assert not (figures / "regret.png").exists()
+    assert all(path.read_text() == "not of the report" for path in strangers)
+    assert (figures / "energy-cost.svg").is_file()
+    assert "regret.svg" not in (figures / LIST_FILE).read_text()
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_made_up_figure_is_one_module_and_one_line(small, monkeypatch):
+    def draw(home: HomeResults) -> Figure:
+        return single(2.0, 1.0, lambda axes: axes.set_title(home.currency))
+
+    made_up = HomeFigure[HomeResults](
+        name="made-up",
+        section=Section("A section of its own"),
+        needs=lambda subject: subject.home if "Rule" in subject.home.methods else None,
+        draw=draw,
+        words=lambda home: Words("Made up", f"Nothing of {len(home.methods)} methods.", "Seen, and said."),
+        missing="Nothing is made up here.",
+    )
+    monkeypatch.setattr("hemma.report.figures.FIGURES", (*FIGURES, made_up))
+    folder, content = small
+    page = write_report(folder).read_text(encoding="utf-8")
+    assert (folder / "figures/made-up.svg").is_file()
+    assert (folder / "figures/made-up.png").is_file()
+    for told in (
+        "<h3>A section of its own</h3>",
+        "Nothing of 3 methods.",
+        "Made up.</strong> Seen, and said.",
+    ):
+        assert told in page
+    del content["homes"]["home"]["methods"]["Rule"]
+    save_results(folder, content)
+    assert "Nothing is made up here." in write_report(folder).read_text(encoding="utf-8")
+    assert not (folder / "figures/made-up.svg").exists()

@@ -12,17 +12,16 @@ def print_aggregate(console: "Console", results: "Results") -> None:
     """A row a method: the mean over homes and seeds; nothing for a single home."""
     from rich.table import Table
 
-    from hemma.report.tables.aggregate import AGGREGATE_HEADINGS, aggregate_table
+    from hemma.report.methods import in_order
+    from hemma.report.tables.aggregate import AGGREGATE_HEADINGS, INTERVALS, aggregate_rows
 
-    rows = aggregate_table(results)
+    rows = aggregate_rows(results)
     if not rows or results.aggregate is None:
         return
-    title = (
-        f"All {len(results.aggregate.homes)} homes: mean, 95 % interval for other seeds and for other homes"
-    )
-    table = Table(AGGREGATE_HEADINGS[0], title=title)
+    title = f"All {len(results.aggregate.homes)} homes: means over homes and seeds"
+    table = Table(AGGREGATE_HEADINGS[0], title=title, caption=INTERVALS)
     for heading in AGGREGATE_HEADINGS[1:]:
         table.add_column(heading, justify="right")
-    for row in rows:
-        table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in row.cells))
+    for method in in_order(rows):
+        table.add_row(method, *(f"{cell.value}\n{cell.detail}".strip() for cell in rows[method]))
     console.print(table)

@@ -11,7 +11,7 @@ from hemma.cli.console import WIDTH, print_json
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hemma.report.comparison.records import Comparison
+    from hemma.report.comparison.records import FolderComparison
 
 Folders = Annotated[
     list[Path],
@@ -45,7 +45,7 @@ def compare(folders: Folders, out: File = None, json: Json = False) -> None:
         typer.echo(f"Comparison: {out}", err=json)
 
 
-def _print_comparison(comparison: "Comparison") -> None:
+def _print_comparison(comparison: "FolderComparison") -> None:
     from rich.console import Console
 
     from hemma.report.comparison.table import READING, legend
@@ -61,7 +61,7 @@ def _print_comparison(comparison: "Comparison") -> None:
     console.print(READING, markup=False)
 
 
-def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
+def _print_disagreements(console: "Console", comparison: "FolderComparison") -> None:
     from rich.markup import escape
     from rich.table import Table
 
@@ -78,7 +78,7 @@ def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
     console.print(table)
 
 
-def _print_methods(console: "Console", comparison: "Comparison") -> None:
+def _print_methods(console: "Console", comparison: "FolderComparison") -> None:
     from hemma.report.comparison.table import METHOD_HEADINGS, home_rows
 
     for home in comparison.homes:
@@ -87,12 +87,11 @@ def _print_methods(console: "Console", comparison: "Comparison") -> None:
             console.print(f"Note: {note}", markup=False)
 
 
-def _print_over_homes(console: "Console", comparison: "Comparison") -> None:
-    from hemma.report.comparison.table import OVER_HOMES_HEADINGS, over_homes_rows
+def _print_over_homes(console: "Console", comparison: "FolderComparison") -> None:
+    from hemma.report.comparison.table import OVER_HOMES, OVER_HOMES_HEADINGS, over_homes_rows
 
     if comparison.over_homes:
-        title = "Mean over the homes that both folders share; the interval is about other homes"
-        _print_rows(console, title, OVER_HOMES_HEADINGS, list(over_homes_rows(comparison)))
+        _print_rows(console, OVER_HOMES, OVER_HOMES_HEADINGS, list(over_homes_rows(comparison)))
 
 
 def _print_rows(console: "Console", title: str, headings: tuple[str, ...], rows: list) -> None:

@@ -19,7 +19,7 @@ SILENCE = 10.0
 """Seconds between two lines of a stage where there is no terminal."""
 WIDTH = 120
 """Characters of a line that does not go to a terminal."""
-COLUMNS = ("Runs", "Energy cost", "Mean deviation", "Gap to optimum", "Share of savings", "Training")
+COLUMNS = ("Seeds", "Energy cost", "Mean deviation", "Gap to optimum", "Share of savings", "Training time")
 
 
 @contextmanager
@@ -137,14 +137,7 @@ def print_table(folder: Path) -> None:
             table.add_column(heading, justify="right")
         for row in rows:
             if row.home == home:
-                cells = (
-                    row.seeds,
-                    row.energy_cost,
-                    row.mean_temperature_deviation,
-                    row.gap_to_optimum,
-                    row.share_of_savings,
-                    row.seconds_to_train,
-                )
+                cells = [row.under(heading) for heading in COLUMNS]
                 table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in cells))
         console.print(table)
     print_aggregate(console, results)

@@ -103,7 +103,7 @@ def _print_table(folder: Path, every: bool) -> None:
 
     found = load_robustness(folder)
     methods = [name for name in shown(found) if every or name in PRINTED]
-    table = Table(title="Share of savings at equal comfort, mean deviation in °C", pad_edge=False)
+    table = Table(title="Share of savings at the same deviation, mean deviation in °C", pad_edge=False)
     table.add_column("Fault", min_width=len("controllers"))
     for name in methods:
         table.add_column(name, justify="right")

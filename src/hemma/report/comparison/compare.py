@@ -8,6 +8,7 @@ from hemma.errors import HemmaError
 from hemma.evaluation import (
     NEGLIGIBLE,
     Improvement,
+    Metrics,
     Pair,
     Sample,
     probability_of_improvement,
@@ -17,17 +18,20 @@ from hemma.report.comparison.disagreements import disagreements, why_not_compara
 from hemma.report.comparison.records import (
     ComparedHome,
     ComparedMethod,
-    Comparison,
-    Difference,
-    Measured,
+    FolderComparison,
+    MeasuredMethod,
     OverHomes,
 )
 from hemma.report.methods import in_order
 from hemma.results.records import MethodRuns
 from hemma.results.results import RESULTS_FILE, HomeResults, Results, load_results
 
+RATIOS = ("share_of_savings", "gap_to_optimum")
+"""What can be compared even where two folders measured on other data."""
+COMPARED = ("energy_cost", *RATIOS, "mean_temperature_deviation")
 
-def compare(folders: Sequence[Path]) -> Comparison:
+
+def compare(folders: Sequence[Path]) -> FolderComparison:
     """Compare results folders with the first of them.
 
     Raises ``HemmaError`` for fewer than two folders, one that is named twice, is missing or has no results,
@@ -37,9 +41,9 @@ def compare(folders: Sequence[Path]) -> Comparison:
     _require_folders(paths)
     results = {str(path): load_results(path) for path in paths}
     shared = _shared_homes(results)
-    return Comparison(
+    return FolderComparison(
         folders=tuple(results),
-        disagreements=disagreements(paths, list(results.values())),
+        disagreements=disagreements(list(results.values())),
         homes=tuple(_compared_home(results, home) for home in shared),
         over_homes=tuple(_over_homes(results)),
         notes=tuple(_lacking(results)),
@@ -98,23 +102,14 @@ class _Same:
     def is_comparable(self) -> bool:
         return why_not_comparable(self.first, self.own) is None
 
-    def difference(self, method: str) -> Difference:
+    def difference(self, method: str) -> Metrics:
+        """Of the means; costs only where they can be compared."""
         own, first = self.own.methods[method].mean, self.first.methods[method].mean
-        ratios = Difference(
-            share_of_savings=_less(own.share_of_savings, first.share_of_savings),
-            gap_to_optimum=_less(own.gap_to_optimum, first.gap_to_optimum),
-        )
-        if not self.is_comparable:
-            return ratios
-        return Difference(
-            share_of_savings=ratios.share_of_savings,
-            gap_to_optimum=ratios.gap_to_optimum,
-            energy_cost=_less(own.energy_cost, first.energy_cost),
-            mean_temperature_deviation=_less(
-                own.mean_temperature_deviation, first.mean_temperature_deviation
-            ),
-            improvement=_improvement([self], method),
-        )
+        names = COMPARED if self.is_comparable else RATIOS
+        return Metrics(**{name: _less(getattr(own, name), getattr(first, name)) for name in names})
+
+    def improvement(self, method: str) -> Improvement | None:
+        return _improvement([self], method) if self.is_comparable else None
 
 
 def _compared_home(results: dict[str, Results], home: str) -> ComparedHome:
@@ -139,12 +134,19 @@ def _compared_home(results: dict[str, Results], home: str) -> ComparedHome:
     )
 
 
-def _measured(home: HomeResults | None, first: HomeResults, name: str) -> Measured | None:
+def _measured(home: HomeResults | None, first: HomeResults, name: str) -> MeasuredMethod | None:
     if home is None or name not in home.methods:
         return None
-    method, is_compared = home.methods[name], home is not first and name in first.methods
-    difference = _Same(home, first).difference(name) if is_compared else None
-    return Measured(len(method.runs), method.mean, method.interval, difference)
+    method, same = home.methods[name], None
+    if home is not first and name in first.methods:
+        same = _Same(home, first)
+    return MeasuredMethod(
+        len(method.runs),
+        method.mean,
+        method.interval,
+        same and same.difference(name),
+        same and same.improvement(name),
+    )
 
 
 def _over_homes(results: dict[str, Results]) -> Iterator[OverHomes]:

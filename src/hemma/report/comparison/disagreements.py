@@ -1,12 +1,10 @@
 """Where results folders differ in what they were made of: version, settings, data."""
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from hemma.results.results import RESULTS_FILE, HomeResults, Results
+from hemma.results.results import HomeResults, Results
 
 
 @dataclass(frozen=True)
@@ -19,11 +17,11 @@ class Disagreement:
     """One a folder; None where a folder does not have it."""
 
 
-def disagreements(folders: Sequence[Path], results: Sequence[Results]) -> tuple[Disagreement, ...]:
+def disagreements(results: Sequence[Results]) -> tuple[Disagreement, ...]:
     """Version, source code and settings that differ between the folders, settings by their dotted names."""
     columns = [
-        {"hemma": one.hemma, "code": _code(folder), **dict(_flattened("", one.settings))}
-        for folder, one in zip(folders, results, strict=True)
+        {"hemma": one.hemma, "code": one.code[:12] or None, **dict(_flattened("", one.settings))}
+        for one in results
     ]
     keys = dict.fromkeys(key for column in columns for key in column)
     rows = [Disagreement(key, tuple(column.get(key) for column in columns)) for key in keys]
@@ -42,12 +40,6 @@ def why_not_comparable(first: HomeResults, other: HomeResults) -> str | None:
     if first.currency != other.currency:
         return "were measured in different currencies"
     return None
-
-
-def _code(folder: Path) -> Any:
-    """Digest of the source that made the numbers, shortened as version control does."""
-    code = json.loads((folder / RESULTS_FILE).read_text(encoding="utf-8")).get("code")
-    return code[:12] if isinstance(code, str) else None
 
 
 def _flattened(prefix: str, settings: dict[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -9,15 +9,13 @@ from typing import Any
 
 from hemma.checkpoint import write_atomically
 from hemma.errors import HemmaError
-from hemma.evaluation import Improvement, Interval
+from hemma.evaluation import Improvement, Interval, Metrics
+from hemma.report.comparison.compare import COMPARED
 from hemma.report.comparison.page import comparison_page
-from hemma.report.comparison.records import ComparedHome, Comparison, Difference, Measured, OverHomes
-
-COMPARED = ("energy_cost", "share_of_savings", "gap_to_optimum", "mean_temperature_deviation")
-"""Columns of the CSV file, each with its interval and its difference to the first folder."""
+from hemma.report.comparison.records import ComparedHome, FolderComparison, MeasuredMethod, OverHomes
 
 
-def comparison_document(comparison: Comparison) -> dict[str, Any]:
+def comparison_document(comparison: FolderComparison) -> dict[str, Any]:
     """The comparison as JSON: ``folders``, ``disagreements``, ``notes``, ``homes``, ``over_homes``."""
     return {
         "folders": list(comparison.folders),
@@ -28,9 +26,9 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def write_comparison(path: Path, comparison: Comparison) -> None:
+def write_comparison(path: Path, comparison: FolderComparison) -> None:
     """Write the comparison in the form that the file's name asks for: .html, .csv or .json."""
-    forms: dict[str, Callable[[Comparison], str]] = {
+    forms: dict[str, Callable[[FolderComparison], str]] = {
         ".html": comparison_page,
         ".csv": comparison_csv,
         ".json": lambda found: json.dumps(comparison_document(found), indent=1, ensure_ascii=False) + "\n",
@@ -42,7 +40,7 @@ def write_comparison(path: Path, comparison: Comparison) -> None:
     write_atomically(path, forms[path.suffix](comparison).encode())
 
 
-def comparison_csv(comparison: Comparison) -> str:
+def comparison_csv(comparison: FolderComparison) -> str:
     """One row for each home, method and folder; empty where there is no such number."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
@@ -57,7 +55,7 @@ def comparison_csv(comparison: Comparison) -> str:
     return file.getvalue()
 
 
-def _home_document(comparison: Comparison, home: ComparedHome) -> dict[str, Any]:
+def _home_document(comparison: FolderComparison, home: ComparedHome) -> dict[str, Any]:
     return {
         "notes": list(home.notes),
         "methods": {
@@ -71,14 +69,14 @@ def _home_document(comparison: Comparison, home: ComparedHome) -> dict[str, Any]
     }
 
 
-def _measured_document(found: Measured) -> dict[str, Any]:
+def _measured_document(found: MeasuredMethod) -> dict[str, Any]:
     difference = found.difference
     return {
         "runs": found.runs,
         "mean": found.mean.model_dump(mode="json"),
         "interval": found.interval.model_dump(mode="json"),
         "difference": difference and {name: getattr(difference, name) for name in COMPARED},
-        "probability_of_improvement": difference and _improvement_document(difference.improvement),
+        "probability_of_improvement": _improvement_document(found.improvement),
     }
 
 
@@ -105,11 +103,11 @@ def _bounds(interval: Interval | None) -> list[float] | None:
     return None if interval is None else [interval.low, interval.high]
 
 
-def _numbers(found: Measured) -> list[float | None]:
-    difference = found.difference or Difference(None, None)
+def _numbers(found: MeasuredMethod) -> list[float | None]:
+    difference = found.difference or Metrics()
     numbers: list[float | None] = []
     for name in COMPARED:
         low, high = getattr(found.interval, name) or (None, None)
         numbers += [getattr(found.mean, name), low, high, getattr(difference, name)]
-    improvement = difference.improvement or Improvement(None, None)
+    improvement = found.improvement or Improvement(None, None)
     return [*numbers, improvement.probability, *(_bounds(improvement.interval) or (None, None))]

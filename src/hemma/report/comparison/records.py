@@ -7,28 +7,18 @@ from hemma.report.comparison.disagreements import Disagreement
 
 
 @dataclass(frozen=True)
-class Difference:
-    """A method in one folder less the same method in the first folder; means over the runs."""
-
-    share_of_savings: float | None
-    gap_to_optimum: float | None
-    energy_cost: float | None = None
-    """[currency]; this and all below are None where only ratios can be compared."""
-    mean_temperature_deviation: float | None = None
-    """[degC]."""
-    improvement: Improvement | None = None
-    """How probably a run of this folder has a lower regret than one of the first."""
-
-
-@dataclass(frozen=True)
-class Measured:
+class MeasuredMethod:
     """A method on a home, in one folder."""
 
     runs: int
     mean: Metrics
     interval: Intervals
-    difference: Difference | None
-    """None in the first folder, and where that lacks the method."""
+    difference: Metrics | None
+    """What is more here than in the first folder: only ratios where costs cannot be compared. None in the
+    first folder, and where that lacks the method."""
+    improvement: Improvement | None
+    """How probably a run of this folder has a lower regret than one of the first; None where it cannot be
+    compared."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +26,7 @@ class ComparedMethod:
     """A method on a home, in all folders."""
 
     method: str
-    found: tuple[Measured | None, ...]
+    found: tuple[MeasuredMethod | None, ...]
     """One a folder; None where a folder lacks the method."""
 
 
@@ -60,13 +50,13 @@ class OverHomes:
     folder: str
     homes: tuple[str, ...]
     share_of_savings: Summary
-    """Of the differences home by home; the interval is about other homes and seeds."""
+    """Of the differences home by home; the interval is from home to home."""
     improvement: Improvement | None
     """The mean over the homes; None where they were not measured on the same data."""
 
 
 @dataclass(frozen=True)
-class Comparison:
+class FolderComparison:
     """Everything that is said of several folders."""
 
     folders: tuple[str, ...]

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from hemma.evaluation import Improvement
-from hemma.report.comparison.records import ComparedHome, Comparison, Measured, OverHomes
-from hemma.report.numbers import DASH, decimals, degrees, fine, hundredths, money, percent
-from hemma.report.tables.results import Cell
+from hemma.evaluation import Improvement, Metrics
+from hemma.report.comparison.records import ComparedHome, FolderComparison, MeasuredMethod, OverHomes
+from hemma.report.numbers import DASH, hundredths
+from hemma.report.tables.cells import CHANCE, DEGREES, NOTHING, PERCENT, Bounds, Cell, Notation, in_money
 
 METHOD_HEADINGS = (
     "Method",
@@ -24,7 +24,11 @@ OVER_HOMES_HEADINGS = ("Method", "Folder", "Homes", "Share of savings, differenc
 READING = (
     "A is the folder that the others are compared with: in parentheses stands the difference to it, in "
     "brackets the 95 % interval of the mean. Better than A: how probably a run of this folder has a lower "
-    "regret (cost above perfect information at equal comfort) than a run of A; 0.5 is no difference."
+    "regret (cost above perfect information with the same deviation) than a run of A; 0.5 is no difference."
+)
+OVER_HOMES = (
+    "Mean over the homes that both folders share; the interval is from home to home: it leaves out what the "
+    "homes share, such as weather, prices and building"
 )
 DISAGREEMENT_WIDTH = 60
 """Characters of a value that is shown; longer ones are cut."""
@@ -46,12 +50,12 @@ def letter(place: int) -> str:
     return chr(ord("A") + place) if place < 26 else str(place + 1)
 
 
-def legend(comparison: Comparison) -> list[str]:
+def legend(comparison: FolderComparison) -> list[str]:
     """Which letter stands for which folder."""
     return [f"{letter(place)}  {name}" for place, name in enumerate(comparison.folders)]
 
 
-def disagreement_rows(comparison: Comparison) -> list[tuple[str, ...]]:
+def disagreement_rows(comparison: FolderComparison) -> list[tuple[str, ...]]:
     """What differs, and its value in each folder."""
     return [(row.key, *(_short(value) for value in row.values)) for row in comparison.disagreements]
 
@@ -66,7 +70,7 @@ def home_rows(home: ComparedHome) -> Iterator[ComparisonRow]:
                 )
 
 
-def over_homes_rows(comparison: Comparison) -> Iterator[ComparisonRow]:
+def over_homes_rows(comparison: FolderComparison) -> Iterator[ComparisonRow]:
     """A row for each method in each folder but the first."""
     for found in comparison.over_homes:
         yield ComparisonRow(
@@ -79,51 +83,40 @@ def _short(value: Any) -> str:
     return text if len(text) <= DISAGREEMENT_WIDTH else f"{text[: DISAGREEMENT_WIDTH - 1]}…"
 
 
-def _cells(found: Measured, currency: str) -> tuple[Cell, ...]:
-    mean, interval, less = found.mean, found.interval, found.difference
+def _cells(found: MeasuredMethod, currency: str) -> tuple[Cell, ...]:
+    mean, interval, less = found.mean, found.interval, found.difference or Metrics()
     return (
         Cell(str(found.runs)),
+        _cell(in_money(currency), mean.energy_cost, less.energy_cost, interval.energy_cost),
+        _cell(PERCENT, mean.share_of_savings, less.share_of_savings, interval.share_of_savings),
+        _cell(PERCENT, mean.gap_to_optimum, less.gap_to_optimum, interval.gap_to_optimum),
         _cell(
-            money(mean.energy_cost, currency),
-            less and _signed(less.energy_cost, lambda value: decimals(value, 2)),
-            _range(interval.energy_cost, lambda value: decimals(value, 2)),
+            DEGREES,
+            mean.mean_temperature_deviation,
+            less.mean_temperature_deviation,
+            interval.mean_temperature_deviation,
         ),
-        _cell(
-            percent(mean.share_of_savings),
-            less and _signed(less.share_of_savings, hundredths),
-            _range(interval.share_of_savings, hundredths),
-        ),
-        _cell(
-            percent(mean.gap_to_optimum),
-            less and _signed(less.gap_to_optimum, hundredths),
-            _range(interval.gap_to_optimum, hundredths),
-        ),
-        _cell(
-            degrees(mean.mean_temperature_deviation),
-            less and _signed(less.mean_temperature_deviation, fine),
-            _range(interval.mean_temperature_deviation, fine),
-        ),
-        _improvement_cell(less and less.improvement),
+        _improvement_cell(found.improvement),
     )
 
 
 def _over_homes_cells(found: OverHomes) -> tuple[Cell, ...]:
     summary = found.share_of_savings
-    bounds = None if summary.interval is None else (summary.interval.low, summary.interval.high)
-    difference = Cell(_signed(summary.mean, hundredths) or DASH, _range(bounds, hundredths))
+    difference = Cell(_signed(summary.mean, hundredths) or DASH, PERCENT.range(summary.interval))
     return Cell(str(len(found.homes))), difference, _improvement_cell(found.improvement)
 
 
 def _improvement_cell(improvement: Improvement | None) -> Cell:
     if improvement is None or improvement.probability is None:
-        return Cell(DASH)
-    interval = improvement.interval
-    bounds = None if interval is None else (interval.low, interval.high)
-    return Cell(decimals(improvement.probability, 2), _range(bounds, lambda value: decimals(value, 2)))
+        return NOTHING
+    return CHANCE.cell(improvement.probability, improvement.interval)
 
 
-def _cell(value: str, difference: str | None, interval: str) -> Cell:
-    return Cell(f"{value} ({difference})" if difference else value, interval)
+def _cell(notation: Notation, mean: float | None, less: float | None, bounds: Bounds) -> Cell:
+    """The mean, the difference to the first folder if there is one, and the interval."""
+    difference = _signed(less, notation.bare)
+    value = notation.full(mean)
+    return Cell(f"{value} ({difference})" if difference else value, notation.range(bounds))
 
 
 def _signed(value: float | None, written: Callable[[float | None], str]) -> str:
@@ -132,7 +125,3 @@ def _signed(value: float | None, written: Callable[[float | None], str]) -> str:
         return ""
     text = written(value)
     return f"+{text}" if value > 0 else text
-
-
-def _range(bounds: tuple[float, float] | None, written: Callable[[float | None], str]) -> str:
-    return "" if bounds is None else f"[{written(bounds[0])}, {written(bounds[1])}]"

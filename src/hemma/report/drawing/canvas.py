@@ -1,9 +1,8 @@
 """Figures without pyplot: the style of all of them, and how they reach the disk."""
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,8 @@ from matplotlib.ticker import FuncFormatter
 from hemma.checkpoint import write_atomically
 
 DOTS_PER_INCH = 180
+PANEL_WIDTH, FULL_WIDTH = 5.4, 9.2
+"""Widths [inch] of half and whole figures."""
 INK, FAINT, GRID = "#222222", "#666666", "#E2E2E2"
 
 _STYLE: dict[Any, Any] = {
@@ -57,18 +58,6 @@ _STYLE: dict[Any, Any] = {
 }
 
 
-@dataclass(frozen=True)
-class Picture:
-    """A figure on the disk and what the report says with it."""
-
-    svg: bytes
-    title: str
-    alternative: str
-    """What a reader who cannot see it needs to know."""
-    caption: str
-    """What a reader who sees it wants to know."""
-
-
 @contextmanager
 def drawing_style() -> Iterator[None]:
     """The style inside the block; the caller's Matplotlib settings are as they were behind it."""
@@ -81,6 +70,13 @@ def drawing_style() -> Iterator[None]:
 def new_figure(width: float, height: float) -> Figure:
     """A figure of a size [inch] that belongs to nobody's pyplot."""
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def single(width: float, height: float, draw: Callable[[Axes], None]) -> Figure:
+    """A figure of a size [inch] with one pair of axes."""
+    figure = new_figure(width, height)
+    draw(figure.add_subplot())
+    return figure
 
 
 def save(figure: Figure, folder: Path, name: str) -> bytes:

@@ -51,30 +51,67 @@ def place_labels(axes: Axes, labels: Sequence[Label], lines: Sequence[Float[np.n
     frame = np.array(axes.get_window_extent().extents)
     labels = _joined(axes, labels)
     points = [axes.transData.transform((label.x, label.y)) for label in labels]
-    marks = [_around(point, 4.0) for point in points]
-    names: list[Box] = []
-    leaders: list[Float[np.ndarray, "more 2"]] = []
     traced = [_dense(axes.transData.transform(line)) for line in lines if len(line)]
     track = np.concatenate(traced) if traced else np.zeros((0, 2))
-    pixels = figure.dpi / 72
+    taken = _Taken(frame, track, [_around(point, 4.0) for point in points], [], [])
     for number, (label, point) in enumerate(zip(labels, points, strict=True)):
-        others = marks[:number] + marks[number + 1 :]
-        size = _size(axes, label)
-        places = [_offset(distance, angle) for distance, angle in product(_DISTANCES, _ANGLES)]
-        boxes = [_box(point + pixels * offset, size, offset) for offset in places]
-        lines_to = [_leader(point, offset, pixels) for offset in places]
-        costs = [
-            float(np.hypot(*offset))
-            + _cost(box, frame, [*marks, *names], track)
-            + _CROSSED * _crossings(names, leader)
-            + _STRUCK * _crossings(others, leader)
-            + _CROSSED * sum(_crossings([box], other) for other in leaders)
-            for box, offset, leader in zip(boxes, places, lines_to, strict=True)
-        ]
-        best = int(np.argmin(costs))
-        names.append(boxes[best])
-        leaders.append(lines_to[best])
-        _write(axes, label, places[best])
+        spot = _Spot(number, point, _size(axes, label), figure.dpi / 72)
+        offset = _cheapest(spot, taken)
+        taken.names.append(spot.box(offset))
+        taken.leaders.append(spot.leader(offset))
+        _write(axes, label, offset)
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """What the place of a name depends on, in pixels; grows name by name."""
+
+    frame: Box
+    track: Float[np.ndarray, "points 2"]
+    marks: list[Box]
+    """Around the points."""
+    names: list[Box]
+    leaders: list[Float[np.ndarray, "_ 2"]]
+
+
+@dataclass(frozen=True)
+class _Spot:
+    """A point that needs a name."""
+
+    number: int
+    point: Float[np.ndarray, "2"]
+    size: Float[np.ndarray, "2"]
+    """Of the name."""
+    pixels: float
+    """In a point of typography, the unit of all offsets."""
+
+    def box(self, offset: Float[np.ndarray, "2"]) -> Box:
+        """Around the name."""
+        (x, y), (width, height) = self.point + self.pixels * offset, self.size
+        left = x if offset[0] >= 0 else x - width
+        return np.array([left - 1, y - height / 2, left + width + 1, y + height / 2])
+
+    def leader(self, offset: Float[np.ndarray, "2"]) -> Float[np.ndarray, "more 2"]:
+        """Points along the line to the name; none where it stands beside its point."""
+        if np.hypot(*offset) <= _LEADER:
+            return np.zeros((0, 2))
+        return _dense(np.array([self.point, self.point + self.pixels * offset]))
+
+
+def _cheapest(spot: _Spot, taken: _Taken) -> Float[np.ndarray, "2"]:
+    """The offset of the name that costs least, the nearest of equals."""
+    others = taken.marks[: spot.number] + taken.marks[spot.number + 1 :]
+    best, least = np.zeros(2), np.inf
+    for distance, angle in product(_DISTANCES, _ANGLES):
+        offset = np.array([distance * np.cos(angle), distance * np.sin(angle)])
+        box, leader = spot.box(offset), spot.leader(offset)
+        cost = distance + _cost(box, taken)
+        if cost < least:
+            crossed = _crossings(taken.names, leader) + sum(_crossings([box], it) for it in taken.leaders)
+            cost += _CROSSED * crossed + _STRUCK * _crossings(others, leader)
+        if cost < least:
+            best, least = offset, cost
+    return best
 
 
 def _joined(axes: Axes, labels: Sequence[Label]) -> list[Label]:
@@ -127,22 +164,9 @@ def _line(offset: Float[np.ndarray, "2"]) -> dict[str, Any]:
     return {"arrowstyle": "-", "color": FAINT, "lw": 0.5, "relpos": edge, "shrinkA": 0.0, "shrinkB": 3.0}
 
 
-def _leader(
-    point: Float[np.ndarray, "2"], offset: Float[np.ndarray, "2"], pixels: float
-) -> Float[np.ndarray, "more 2"]:
-    """Points along the line to a name; none of a name beside its point. ``pixels`` a point has."""
-    if np.hypot(*offset) <= _LEADER:
-        return np.zeros((0, 2))
-    return _dense(np.array([point, point + pixels * offset]))
-
-
 def _crossings(boxes: Sequence[Box], line: Float[np.ndarray, "more 2"]) -> int:
     """How many of the boxes a line runs through."""
     return sum(bool(np.any(np.all((line > box[:2]) & (line < box[2:]), axis=1))) for box in boxes)
-
-
-def _offset(distance: float, angle: float) -> Float[np.ndarray, "2"]:
-    return np.array([distance * np.cos(angle), distance * np.sin(angle)])
 
 
 def _size(axes: Axes, label: Label) -> Float[np.ndarray, "2"]:
@@ -151,11 +175,6 @@ def _size(axes: Axes, label: Label) -> Float[np.ndarray, "2"]:
     extent = text.get_window_extent()
     text.remove()
     return np.array([extent.width, extent.height])
-
-
-def _box(anchor: Float[np.ndarray, "2"], size: Float[np.ndarray, "2"], offset: Float[np.ndarray, "2"]) -> Box:
-    left = anchor[0] if offset[0] >= 0 else anchor[0] - size[0]
-    return np.array([left - 1, anchor[1] - size[1] / 2, left + size[0] + 1, anchor[1] + size[1] / 2])
 
 
 def _around(point: Float[np.ndarray, "2"], radius: float) -> Box:
@@ -168,8 +187,8 @@ def _dense(track: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "more 2"]:
     return np.concatenate(steps) if steps else track
 
 
-def _cost(box: Box, frame: Box, occupied: list[Box], track: Float[np.ndarray, "points 2"]) -> float:
-    others = np.array(occupied)
+def _cost(box: Box, taken: _Taken) -> float:
+    others, frame, track = np.array([*taken.marks, *taken.names]), taken.frame, taken.track
     wide = np.minimum(box[2], others[:, 2]) - np.maximum(box[0], others[:, 0])
     tall = np.minimum(box[3], others[:, 3]) - np.maximum(box[1], others[:, 1])
     overlaps = int(np.sum((wide > 0) & (tall > 0)))

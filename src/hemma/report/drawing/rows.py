@@ -7,7 +7,9 @@ from matplotlib.axes import Axes
 
 from hemma.report.drawing.canvas import FAINT, INK
 from hemma.report.methods import grouped
+from hemma.results.results import HomeResults
 
+FROM_ZERO = "No deviation is negative: an interval that reaches below zero is drawn from zero."
 UNGROUPED = 8
 """Up to so many methods stand without the titles of their groups."""
 
@@ -107,7 +109,9 @@ def draw_seeds(axes: Axes, place: float, values: Iterable[float | None], colour:
     return drawn
 
 
-def explain_marks(axes: Axes) -> None:
-    """Interval and seeds in the legend."""
+def explain_marks(axes: Axes, home: HomeResults) -> None:
+    """Interval and seeds in the legend, where there are any."""
+    if all(len(method.runs) < 2 for method in home.methods.values()):
+        return
     axes.plot([], [], "|-", color=INK, markersize=6, label="95 % interval")
     axes.plot([], [], "o", color=FAINT, alpha=0.6, markersize=3.2, mew=0, label="one seed")

@@ -1,7 +1,9 @@
 """How to read the report: what each number means, and what it does not say."""
 
+from hemma.report.comfort import REACHABLE
 from hemma.report.methods import in_order, meaning_of
 from hemma.report.numbers import DASH
+from hemma.report.tables.aggregate import INTERVALS
 from hemma.results.results import HomeResults, Results
 
 _METRICS = (
@@ -19,13 +21,16 @@ _METRICS = (
         "Optimum, perfect information",
         "The least cost that any controller could have reached had it known all prices, weather and loads of "
         "the test period beforehand, with the least deviation that is possible. It is proven by branch and "
-        "bound, not estimated. Nobody can run it: it is the end of the scale.",
+        "bound, not estimated; where a gap to the proven lower bound is left, the table says 'not proven'. "
+        "Nobody can run it: it is the end of the scale.",
     ),
     (
         "Equal comfort",
         "A home that drifts warm in summer or cold in winter looks cheap. So each method is compared with "
         "perfect information that may cause the same total deviation D as the method itself did: optimum(D). "
-        "no-battery(D) is the same problem without the battery.",
+        "no-battery(D) is the same problem without the battery. Where even perfect information misses the "
+        f"comfort band by more than {REACHABLE:g} °C on average, costs are compared at the same deviation, "
+        "and nobody speaks of equal comfort.",
     ),
     ("Gap to optimum", "(cost − optimum(D)) / |optimum(D)|: what not knowing the future costs."),
     (
@@ -43,7 +48,7 @@ _METRICS = (
     (
         "Interquartile mean, worst seed",
         "The interquartile mean leaves out the best and the worst quarter of the runs, so that one run gone "
-        "astray does not move it. The worst seed is the run farthest from the optimum at equal comfort: what "
+        "astray does not move it. The worst seed is the run farthest from optimum(D): what "
         "an owner with bad luck gets.",
     ),
     (
@@ -63,7 +68,9 @@ _DASH = (
 LIMITS = (
     "The home is simulated: the controllers act on a thermal model and a battery model, not on a building.",
     "One test period, one climate, one tariff: other seasons and prices are not measured here.",
-    "The intervals cover the randomness of training alone, not that of weather, prices or homes.",
+    "The intervals cover the randomness of training alone, not that of weather, prices or homes; those from "
+    "home to home cover what differs between these homes, and several homes may share weather, prices and "
+    "building.",
 )
 
 
@@ -74,15 +81,16 @@ def metric_meanings(results: Results) -> list[tuple[str, str]]:
 
 def _seeds_and_intervals(results: Results) -> str:
     over_homes = (
-        " Over several homes every home counts the same: the interval below a mean is about these homes with "
-        "other seeds, the one called 'on other homes' about homes drawn like these."
+        f" Over several homes every home counts the same: {INTERVALS}. Homes that share these are fewer than "
+        "they look, and it is too narrow for homes in general."
         if results.aggregate is not None
         else ""
     )
     return (
         "A method that learns is trained anew with several random seeds. The number is the mean; in brackets "
         f"stands the 95 % interval of that mean ({results.interval_kind}). Methods without randomness "
-        f"run once and have no interval.{over_homes}"
+        "run once and have no interval. An interval of a deviation that reaches below zero only says that "
+        f"there are few seeds: no deviation is negative.{over_homes}"
     )
 
 

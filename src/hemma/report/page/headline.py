@@ -3,11 +3,24 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from hemma.report.comfort import at_equal_comfort, comfort_warning
 from hemma.report.methods import main_method
 from hemma.report.numbers import degrees, hundredths, money, percent, plain
-from hemma.results.results import HomeResults, MethodRuns
+from hemma.report.tables.results import is_proven
+from hemma.results.records import MethodRuns
+from hemma.results.results import HomeResults
 
 DEFAULT = "default"
+GLANCE_HEADINGS = (
+    "Home",
+    "Method",
+    "Energy cost",
+    "Rule",
+    "Perfect information",
+    "Share of savings",
+    "Gap to optimum",
+    "Mean deviation",
+)
 
 
 @dataclass(frozen=True)
@@ -25,9 +38,10 @@ def headline(name: str, home: HomeResults) -> Headline:
     said = (
         _cost_sentence(name, home, subject, method),
         _reference_sentence(home, subject),
-        _savings_sentence(subject, method),
+        _savings_sentence(home, subject, method),
         _default_sentence(home, subject),
         _comfort_sentence(home, method),
+        comfort_warning(home),
     )
     return Headline(title=_title(home, subject, method), text=" ".join(filter(None, said)))
 
@@ -67,18 +81,21 @@ def _reference_sentence(home: HomeResults, subject: str) -> str:
     if "Rule" in home.methods and subject != "Rule":
         parts.append(f"Rule costs {money(home.methods['Rule'].mean.energy_cost, home.currency)}")
     if home.optimum is not None and home.optimum.energy_cost is not None:
-        parts.append(f"perfect information would cost {money(home.optimum.energy_cost, home.currency)}")
+        unproven = "" if is_proven(home) else " (not proven)"
+        best = money(home.optimum.energy_cost, home.currency)
+        parts.append(f"perfect information would cost {best}{unproven}")
     text = "; ".join(parts)
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
-def _savings_sentence(subject: str, method: MethodRuns) -> str:
+def _savings_sentence(home: HomeResults, subject: str, method: MethodRuns) -> str:
     share, interval = method.mean.share_of_savings, method.interval.share_of_savings
     if share is None:
         return ""
     spread = "" if interval is None else f" ({hundredths(interval[0])} to {percent(interval[1])})"
+    condition = at_equal_comfort(home).capitalize()
     kept = f"{subject} keeps {percent(share)}{spread}"
-    return f"At equal comfort {kept} of the savings that a battery makes possible."
+    return f"{condition} {kept} of the savings that a battery makes possible."
 
 
 def _default_sentence(home: HomeResults, subject: str) -> str:
@@ -114,7 +131,7 @@ def _date(start: str) -> str:
 
 
 def summary_cells(home: HomeResults) -> tuple[str, ...]:
-    """A row of the table over homes: method, its cost, Rule, optimum, share, gap, deviation."""
+    """What stands below ``GLANCE_HEADINGS`` from the second on."""
     subject = main_method(home.methods)
     mean = home.methods[subject].mean
     rule = home.methods["Rule"].mean.energy_cost if "Rule" in home.methods else None
@@ -123,7 +140,7 @@ def summary_cells(home: HomeResults) -> tuple[str, ...]:
         subject,
         money(mean.energy_cost, home.currency),
         money(rule, home.currency),
-        money(best, home.currency),
+        money(best, home.currency) + ("" if is_proven(home) else " (not proven)"),
         percent(mean.share_of_savings),
         percent(mean.gap_to_optimum),
         degrees(mean.mean_temperature_deviation),

@@ -1,26 +1,62 @@
 """The few pieces of HTML that the report is made of; all text goes through ``escape``."""
 
 import base64
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 
-from hemma.report.drawing.canvas import Picture
+from hemma.report.figures.figure import Picture
+from hemma.report.methods import grouped
+from hemma.report.numbers import DASH
+from hemma.report.page.stylesheet import STYLESHEET
+from hemma.report.tables.cells import Cell
+
+_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
+"""What the browser may load for a page: nothing from anywhere."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a table under its own head."""
+
+    title: str
+    cells: Iterable[Cell | str]
+    style: str = ""
+
+
+@dataclass(frozen=True)
+class RowGroup:
+    """Rows that belong together, under a title if they have one."""
+
+    rows: Iterable[Row]
+    title: str = ""
+
+
+def document(title: str, opening: str, content: str) -> str:
+    """A whole page from finished HTML."""
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{escape(title)}</title><style>{STYLESHEET}</style></head><body>"
+        f"<header>{opening}</header><main>{content}</main></body></html>\n"
+    )
 
 
 def paragraph(text: str, style: str = "") -> str:
-    """A paragraph of plain text."""
-    return f"<p{_class(style)}>{escape(text)}</p>"
+    """A paragraph of plain text; nothing for no text."""
+    return f"<p{_class(style)}>{escape(text)}</p>" if text else ""
 
 
-def heading(level: int, text: str, anchor: str = "") -> str:
-    """A heading; ``anchor`` is where links point to."""
-    place = f' id="{escape(anchor)}"' if anchor else ""
-    return f"<h{level}{place}>{escape(text)}</h{level}>"
+def heading(level: int, text: str) -> str:
+    """A heading."""
+    return f"<h{level}>{escape(text)}</h{level}>"
 
 
 def bullets(items: Iterable[str]) -> str:
-    """A list of plain text."""
-    return "<ul>" + "".join(f"<li>{escape(item)}</li>" for item in items) + "</ul>"
+    """A list of plain text; nothing for no items."""
+    listed = "".join(f"<li>{escape(item)}</li>" for item in items)
+    return f"<ul>{listed}</ul>" if listed else ""
 
 
 def definitions(entries: Iterable[tuple[str, str]]) -> str:
@@ -28,46 +64,56 @@ def definitions(entries: Iterable[tuple[str, str]]) -> str:
     return "<dl>" + "".join(f"<dt>{escape(a)}</dt><dd>{escape(b)}</dd>" for a, b in entries) + "</dl>"
 
 
-def table(caption: str, headings: Sequence[str], bodies: Iterable[str]) -> str:
-    """A table with its column heads; ``bodies`` are finished ``tbody`` elements."""
-    columns = "".join(f'<th scope="col">{escape(text)}</th>' for text in headings)
+def by_group(rows: Mapping[str, Iterable[Cell | str]], main: str = "") -> list[RowGroup]:
+    """Rows by method under the titles of their groups; that of the ``main`` method stands out."""
+    return [
+        RowGroup([Row(name, rows[name], "main" if name == main else "") for name in names], title)
+        for title, names in grouped(rows).items()
+    ]
+
+
+def table(caption: str, headings: Sequence[str], groups: Iterable[RowGroup], style: str = "") -> str:
+    """A table with its column heads. Every cell knows its own: a narrow screen shows rows as cards."""
+    columns = "".join(f'<th scope="col" role="columnheader">{escape(text)}</th>' for text in headings)
+    bodies = "".join(_body(group, headings) for group in groups)
     return (
-        f'<div class="wide"><table><caption>{escape(caption)}</caption>'
-        f"<thead><tr>{columns}</tr></thead>{''.join(bodies)}</table></div>"
+        f'<div class="wide" tabindex="0"><table role="table"{_class(style)}>'
+        f'<caption>{escape(caption)}</caption><thead><tr role="row">{columns}</tr></thead>'
+        f"{bodies}</table></div>"
     )
 
 
-def body(rows: Iterable[str], title: str = "", columns: int = 0) -> str:
-    """A group of finished rows, under a title over all ``columns`` if it has one."""
-    head = f'<tr><th class="group" scope="rowgroup" colspan="{columns}">{escape(title)}</th></tr>'
-    return f"<tbody>{head if title else ''}{''.join(rows)}</tbody>"
-
-
-def row(title: str, cells: Iterable[str], style: str = "") -> str:
-    """A row of finished cells under its own head."""
-    return f'<tr{_class(style)}><th scope="row">{escape(title)}</th>{"".join(cells)}</tr>'
-
-
-def cell(text: str, detail: str = "", style: str = "") -> str:
-    """A cell, with something smaller below."""
-    small = f"<small>{escape(detail)}</small>" if detail else ""
-    return f"<td{_class(style)}>{escape(text)}{small}</td>"
-
-
-def figure(picture: Picture, style: str = "") -> str:
+def figure(picture: Picture, is_wide: bool = True) -> str:
     """A figure with the image inside the page: an SVG of its own, so that no two share identifiers."""
-    data = base64.b64encode(picture.svg).decode()
+    data, words = base64.b64encode(picture.svg).decode(), picture.words
     return (
-        f'<figure{_class(style)}><div class="scroll">'
-        f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(picture.alternative)}"></div>'
-        f"<figcaption><strong>{escape(picture.title)}.</strong> {escape(picture.caption)}</figcaption>"
+        f'<figure{_class("full" if is_wide else "")}><div class="scroll">'
+        f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(words.alternative)}"></div>'
+        f"<figcaption><strong>{escape(words.title)}.</strong> {escape(words.caption)}</figcaption>"
         "</figure>"
     )
 
 
-def figure_or(picture: Picture | None, reason: str) -> str:
-    """A figure over the whole width, or a sentence that says why there is none."""
-    return figure(picture, "full") if picture else paragraph(reason, "faint")
+def _body(group: RowGroup, headings: Sequence[str]) -> str:
+    head = (
+        f'<tr role="row"><th class="group" scope="rowgroup" role="rowheader" colspan="{len(headings)}">'
+        f"{escape(group.title)}</th></tr>"
+    )
+    rows = "".join(_row(row, headings) for row in group.rows)
+    return f'<tbody role="rowgroup">{head if group.title else ""}{rows}</tbody>'
+
+
+def _row(row: Row, headings: Sequence[str]) -> str:
+    cells = "".join(_cell(one, heading) for one, heading in zip(row.cells, headings[1:], strict=True))
+    head = f'<th scope="row" role="rowheader">{escape(row.title)}</th>'
+    return f'<tr role="row"{_class(row.style)}>{head}{cells}</tr>'
+
+
+def _cell(one: Cell | str, heading: str) -> str:
+    cell = Cell(one) if isinstance(one, str) else one
+    small = f"<small>{escape(cell.detail)}</small>" if cell.detail else ""
+    empty = "empty" if str(cell) == DASH else ""
+    return f'<td role="cell"{_class(empty)} data-label="{escape(heading)}">{escape(cell.value)}{small}</td>'
 
 
 def _class(style: str) -> str:

@@ -4,47 +4,34 @@ from collections.abc import Iterator
 from html import escape
 from typing import Any
 
+from hemma.report.figures.figure import Picture
 from hemma.report.page.explanations import method_meanings, metric_meanings
 from hemma.report.page.headline import headline, range_of_shares
-from hemma.report.page.markup import body, cell, definitions, heading, paragraph, row, table
-from hemma.report.page.overview import overview_section
-from hemma.report.page.sections import background_section, results_section
-from hemma.report.page.stylesheet import STYLESHEET
-from hemma.report.pictures import HomePictures, Pictures
-from hemma.report.tables.recommendation import recommendation_section
+from hemma.report.page.home import background_part, results_part
+from hemma.report.page.markup import Row, RowGroup, definitions, document, heading, paragraph, table
+from hemma.report.page.overview import overview
+from hemma.report.pictures import Pictures
 from hemma.report.tables.results import results_table
 from hemma.results.results import Results
-
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
-"""What the browser may load for the page: nothing from anywhere."""
 
 
 def report_page(results: Results, pictures: Pictures) -> str:
     """The HTML of the report."""
-    homes = results.finished
-    parts = [
-        *(_home_section(results, name, pictures.homes[name]) for name in homes),
-        _reading_section(results),
-        *(background_section(name, home, pictures.homes[name]) for name, home in homes.items()),
-        _settings_section(results),
-    ]
     title = _title(results)
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{STYLESHEET}</style></head><body>"
-        f"<header>{_opening(results, title, pictures)}</header><main>{''.join(parts)}</main></body></html>\n"
-    )
+    parts = [_home_part(results, name, pictures.homes[name]) for name in results.finished]
+    background = [
+        heading(2, f"Training, model and data of {name}") + background_part(home, pictures.homes[name])
+        for name, home in results.finished.items()
+    ]
+    content = "".join([*parts, _reading_section(results), *background, _settings_section(results)])
+    return document(title, _opening(results, title, pictures), content)
 
 
-def _home_section(results: Results, name: str, pictures: HomePictures) -> str:
+def _home_part(results: Results, name: str, pictures: dict[str, Picture]) -> str:
     """A home's results; of one home alone the page's opening has said the sentences already."""
-    rows = [row for row in results_table(results) if row.home == name]
-    home = results.homes[name]
+    rows, home = [row for row in results_table(results) if row.home == name], results.homes[name]
     said = paragraph(headline(name, home).text, "lead") if len(results.finished) > 1 else ""
-    advice = recommendation_section(name, home)
-    return heading(2, f"Results on {name}") + said + results_section(home, rows, pictures) + advice
+    return heading(2, f"Results on {name}") + said + results_part(name, home, rows, pictures)
 
 
 def _title(results: Results) -> str:
@@ -62,7 +49,7 @@ def _opening(results: Results, title: str, pictures: Pictures) -> str:
     return (
         paragraph(f"Hemma {results.hemma}: home energy management that learns from an optimiser", "kicker")
         + heading(1, title)
-        + (overview_section(results, pictures) if others else paragraph(headline(name, home).text, "lead"))
+        + (overview(results, pictures.over_homes) if others else paragraph(headline(name, home).text, "lead"))
         + (paragraph(f"Not finished yet: {missing}.") if missing else "")
     )
 
@@ -77,8 +64,8 @@ def _reading_section(results: Results) -> str:
 
 
 def _settings_section(results: Results) -> str:
-    rows = [row(name, [cell(value, style="text")]) for name, value in _flattened("", results.settings)]
-    settings = table("Settings", ("Setting", "Value"), [body(rows)])
+    rows = [Row(name, [value]) for name, value in _flattened("", results.settings)]
+    settings = table("Settings", ("Setting", "Value"), [RowGroup(rows)], "text")
     return (
         heading(2, "Settings, and how to get this again")
         + (settings if rows else paragraph("No settings are stored with these results."))

@@ -1,69 +1,88 @@
-"""Every method over all homes of a results folder, as text."""
+"""Every method over all homes of a results folder, as text, and the main one against the others."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterable
 
-from hemma.report.methods import in_order
-from hemma.report.numbers import DASH, degrees, fine, hundredths, percent
-from hemma.report.tables.results import Cell
-from hemma.results.findings import Aggregated, AggregateMethod
+from hemma.report.numbers import DASH, hundredths, percent
+from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell
+from hemma.results.findings import AggregateMethod, PairedDifference
 from hemma.results.results import Results
 
 AGGREGATE_HEADINGS = (
     "Method",
     "Share of savings",
-    "Other homes",
+    "From home to home",
     "Interquartile mean",
     "Worst run",
     "Gap to optimum",
     "Mean deviation",
 )
+PAIRED_HEADINGS = ("Against", "Points of the share of savings", "From home to home", "Better on")
+INTERVALS = (
+    "in brackets the 95 % interval of the mean for other seeds on the same homes; 'from home to home' is the "
+    "95 % interval that the differences between these homes give, which leaves out all that they share: "
+    "weather, prices, building"
+)
+"""What the two intervals of the table are over."""
 
 
-@dataclass(frozen=True)
-class AggregateRow:
-    """One method over all homes."""
-
-    method: str
-    cells: tuple[Cell, ...]
-    """What stands below the headings from the second on: the share's interval is about other seeds on the
-    same homes, that below "Other homes" about other homes."""
+def aggregate_rows(results: Results) -> dict[str, tuple[Cell, ...]]:
+    """By method what stands below ``AGGREGATE_HEADINGS`` from the second on; nothing for a single home."""
+    found = results.aggregate.methods if results.aggregate else {}
+    return {name: _cells(results, name, method) for name, method in found.items()}
 
 
-def aggregate_table(results: Results) -> list[AggregateRow]:
-    """The rows, methods in their usual order; none where the folder has fewer than two homes."""
-    if results.aggregate is None:
-        return []
-    methods = results.aggregate.methods
-    return [AggregateRow(name, _cells(results, name, methods[name])) for name in in_order(methods)]
+def paired_rows(results: Results, main: str) -> dict[str, tuple[Cell, ...]]:
+    """By other method what stands below ``PAIRED_HEADINGS`` from the second on."""
+    paired = results.aggregate.paired if results.aggregate else ()
+    return {name: _paired_cells(pair) for name, pair in differences_of(main, paired).items()}
+
+
+def differences_of(method: str, paired: Iterable[PairedDifference]) -> dict[str, PairedDifference]:
+    """By the other method how much more of the savings ``method`` keeps; pairs the other way are turned."""
+    known = [pair for pair in paired if pair.metric == "share_of_savings" and pair.mean is not None]
+    turned = {pair.method: _turned(pair) for pair in known if pair.over == method}
+    return {pair.over: pair for pair in known if pair.method == method} | turned
+
+
+def worst_over_homes(results: Results, method: str) -> Cell:
+    """The run that keeps the least of the possible savings, with home and seed; a dash if none has any."""
+    shares = [
+        (run.share_of_savings, name, run.seed)
+        for name, home in results.finished.items()
+        if method in home.methods
+        for run in home.methods[method].runs
+        if run.share_of_savings is not None
+    ]
+    if not shares:
+        return NOTHING
+    share, home, seed = min(shares, key=lambda worst: worst[0])
+    return Cell(percent(share), home if seed is None else f"{home}, seed {seed}")
 
 
 def _cells(results: Results, name: str, found: AggregateMethod) -> tuple[Cell, ...]:
+    share, gap, deviation = found.share_of_savings, found.gap_to_optimum, found.mean_temperature_deviation
     return (
-        _cell(found.share_of_savings, percent, hundredths),
-        Cell(_range(found.share_of_savings.interval_over_homes)),
-        Cell(percent(found.share_of_savings.interquartile_mean)),
-        Cell(_worst(results, name)),
-        _cell(found.gap_to_optimum, percent, hundredths),
-        _cell(found.mean_temperature_deviation, degrees, fine),
+        PERCENT.cell(share.mean, share.interval),
+        Cell(PERCENT.range(share.interval_over_homes) or DASH),
+        Cell(percent(share.interquartile_mean)),
+        worst_over_homes(results, name),
+        PERCENT.cell(gap.mean, gap.interval),
+        DEGREES.cell(deviation.mean, deviation.interval),
     )
 
 
-def _cell(
-    found: Aggregated, full: Callable[[float | None], str], bare: Callable[[float | None], str]
-) -> Cell:
-    if found.interval is None:
-        return Cell(full(found.mean))
-    return Cell(full(found.mean), f"[{bare(found.interval[0])}, {bare(found.interval[1])}]")
+def _paired_cells(pair: PairedDifference) -> tuple[Cell, ...]:
+    known = [gain for gain in pair.differences.values() if gain is not None]
+    better = f"{sum(gain > 0 for gain in known)} of {len(known)} homes"
+    return Cell(hundredths(pair.mean)), Cell(PERCENT.range(pair.interval) or DASH), Cell(better)
 
 
-def _range(bounds: tuple[float, float] | None) -> str:
-    return DASH if bounds is None else f"[{hundredths(bounds[0])}, {hundredths(bounds[1])}]"
-
-
-def _worst(results: Results, name: str) -> str:
-    """The least share of savings of any run on any home."""
-    homes = [home.methods[name].runs for home in results.finished.values() if name in home.methods]
-    shares = [run.share_of_savings for runs in homes for run in runs]
-    known = [share for share in shares if share is not None]
-    return percent(min(known)) if len(known) == len(shares) else DASH
+def _turned(pair: PairedDifference) -> PairedDifference:
+    return PairedDifference(
+        method=pair.over,
+        over=pair.method,
+        metric=pair.metric,
+        differences={home: None if gain is None else -gain for home, gain in pair.differences.items()},
+        mean=None if pair.mean is None else -pair.mean,
+        interval=None if pair.interval is None else (-pair.interval[1], -pair.interval[0]),
+    )

@@ -1,7 +1,7 @@
 """Which controller a home should have, in plain words and as a table."""
 
+from hemma.report.comfort import at_equal_comfort
 from hemma.report.numbers import degrees, money
-from hemma.report.page.markup import body, cell, heading, paragraph, row, table
 from hemma.results.records import JudgedMethod
 from hemma.results.results import HomeResults
 
@@ -19,7 +19,8 @@ def recommendation_sentence(name: str, home: HomeResults) -> str:
     chosen = next(one for one in found.judged if one.method == found.method)
     cost, lowest = (money(one.daily_cost, home.currency, DIGITS) for one in (chosen, least))
     costs = (
-        f"it cost {cost} a day at equal comfort on {found.days} training days that it had not been fitted to"
+        f"it cost {cost} a day {at_equal_comfort(home)} on {found.days} training days that it had not been "
+        "fitted to"
     )
     if chosen is least:
         why = f"{costs}, the least of all, and no simpler method came within a standard error of it"
@@ -35,22 +36,6 @@ def recommendation_rows(home: HomeResults) -> list[tuple[str, ...]]:
     """The cells of the table, a row each method."""
     found = home.recommendation
     return [] if found is None else [_row(one, home.currency) for one in found.judged]
-
-
-def recommendation_section(name: str, home: HomeResults) -> str:
-    """Sentence and table of the report."""
-    found = home.recommendation
-    if found is None:
-        return ""
-    rows = [
-        row(first, [cell(value) for value in rest], "main" if first == found.method else "")
-        for first, *rest in recommendation_rows(home)
-    ]
-    return (
-        heading(3, "Which controller this home should have")
-        + paragraph(recommendation_sentence(name, home))
-        + table("Judged on training days alone", HEADINGS, [body(rows)])
-    )
 
 
 def _row(one: JudgedMethod, currency: str) -> tuple[str, ...]:

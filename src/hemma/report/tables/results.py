@@ -1,11 +1,11 @@
 """The table of results as text: the same rows on the screen and in the report."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from hemma.report.methods import in_order
-from hemma.report.numbers import DASH, decimals, degrees, fine, hundredths, money, percent, seconds
+from hemma.report.numbers import DASH, money, percent, seconds
+from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell, in_money
 from hemma.results.records import MethodRuns
 from hemma.results.results import HomeResults, Results, load_results
 
@@ -22,31 +22,8 @@ TABLE_HEADINGS = (
     "Worst seed",
     "Training time",
 )
-
-
-@dataclass(frozen=True)
-class Cell:
-    """One entry of the table."""
-
-    value: str
-    """The mean over the seeds with its unit, or an en dash."""
-    detail: str = ""
-    """The 95 % interval ``[low, high]`` in the same unit, if there is one; beside the interquartile mean of
-    the cost that of the share of savings, beside the worst seed's cost its gap."""
-
-    def __str__(self) -> str:
-        """Both, as printed on one line."""
-        return f"{self.value} {self.detail}".rstrip()
-
-
-@dataclass(frozen=True)
-class Notation:
-    """How a kind of number is written."""
-
-    full: Callable[[float | None], str]
-    """With its unit."""
-    bare: Callable[[float | None], str]
-    """Without it."""
+PROVEN = 1e-6
+"""A relative gap between cost and lower bound up to this is a proof."""
 
 
 @dataclass(frozen=True)
@@ -55,37 +32,12 @@ class TableRow:
 
     home: str
     method: str
-    seeds: Cell
-    energy_cost: Cell
-    transaction_cost: Cell
-    battery_cost: Cell
-    mean_temperature_deviation: Cell
-    gap_to_optimum: Cell
-    share_of_savings: Cell
-    interquartile_mean: Cell
-    worst_seed: Cell
-    seconds_to_train: Cell
+    measures: tuple[Cell, ...]
+    """What stands below ``TABLE_HEADINGS`` from the second on."""
 
-    @property
-    def measures(self) -> tuple[Cell, ...]:
-        """The cells behind the method's name, in the order of ``TABLE_HEADINGS``."""
-        return (
-            self.seeds,
-            self.energy_cost,
-            self.transaction_cost,
-            self.battery_cost,
-            self.mean_temperature_deviation,
-            self.gap_to_optimum,
-            self.share_of_savings,
-            self.interquartile_mean,
-            self.worst_seed,
-            self.seconds_to_train,
-        )
-
-    @property
-    def cells(self) -> tuple[str, ...]:
-        """The whole row as text, in the order of ``TABLE_HEADINGS``."""
-        return (self.method, *(str(cell) for cell in self.measures))
+    def under(self, heading: str) -> Cell:
+        """The cell below that one of ``TABLE_HEADINGS``, which is not the first."""
+        return self.measures[TABLE_HEADINGS.index(heading) - 1]
 
 
 def results_table(source: Path | Results) -> list[TableRow]:
@@ -96,47 +48,40 @@ def results_table(source: Path | Results) -> list[TableRow]:
     """
     results = source if isinstance(source, Results) else load_results(source)
     return [
-        _row(name, home, method, home.methods[method])
+        TableRow(name, method, _measures(home, method))
         for name, home in results.finished.items()
         for method in in_order(home.methods)
     ]
 
 
-def _row(name: str, home: HomeResults, title: str, method: MethodRuns) -> TableRow:
-    mean, interval = method.mean, method.interval
+def is_proven(home: HomeResults) -> bool:
+    """Whether no controller can cost less than the optimum that was found; so too where no bound is known."""
+    gap = home.optimum.relative_gap if home.optimum else None
+    return gap is None or gap <= PROVEN
 
-    cost = Notation(lambda value: money(value, home.currency), lambda value: decimals(value, 2))
-    return TableRow(
-        home=name,
-        method=title,
-        seeds=Cell(str(len(method.runs)) if method.is_learned else DASH),
-        energy_cost=_cell(mean.energy_cost, interval.energy_cost, cost),
-        transaction_cost=_cell(mean.transaction_cost, interval.transaction_cost, cost),
-        battery_cost=_cell(mean.battery_cost, interval.battery_cost, cost),
-        mean_temperature_deviation=_cell(
-            mean.mean_temperature_deviation, interval.mean_temperature_deviation, Notation(degrees, fine)
-        ),
-        gap_to_optimum=_cell(mean.gap_to_optimum, interval.gap_to_optimum, Notation(percent, hundredths)),
-        share_of_savings=_cell(
-            mean.share_of_savings, interval.share_of_savings, Notation(percent, hundredths)
-        ),
-        interquartile_mean=_interquartile_cell(method, home.currency),
-        worst_seed=_worst_cell(method, home.currency),
-        seconds_to_train=Cell(seconds(mean.seconds_to_train)),
+
+def _measures(home: HomeResults, name: str) -> tuple[Cell, ...]:
+    method, currency = home.methods[name], home.currency
+    mean, interval, money_of = method.mean, method.interval, in_money(currency)
+    gap = PERCENT.cell(mean.gap_to_optimum, interval.gap_to_optimum)
+    return (
+        Cell(str(len(method.runs)) if method.is_learned else DASH),
+        money_of.cell(mean.energy_cost, interval.energy_cost),
+        money_of.cell(mean.transaction_cost, interval.transaction_cost),
+        money_of.cell(mean.battery_cost, interval.battery_cost),
+        DEGREES.cell(mean.mean_temperature_deviation, interval.mean_temperature_deviation),
+        gap if name != "optimum" or is_proven(home) else Cell(gap.value, "not proven"),
+        PERCENT.cell(mean.share_of_savings, interval.share_of_savings),
+        _interquartile_cell(method, currency),
+        _worst_cell(method, currency),
+        Cell(seconds(mean.seconds_to_train)),
     )
-
-
-def _cell(mean: float | None, interval: tuple[float, float] | None, notation: Notation) -> Cell:
-    if interval is None:
-        return Cell(notation.full(mean))
-    low, high = (notation.bare(bound) for bound in interval)
-    return Cell(notation.full(mean), f"[{low}, {high}]")
 
 
 def _interquartile_cell(method: MethodRuns, currency: str) -> Cell:
     middle = method.interquartile_mean
     if len(method.runs) < 2:
-        return Cell(DASH)
+        return NOTHING
     share = "" if middle.share_of_savings is None else f"(share {percent(middle.share_of_savings)})"
     return Cell(money(middle.energy_cost, currency), share)
 
@@ -144,6 +89,6 @@ def _interquartile_cell(method: MethodRuns, currency: str) -> Cell:
 def _worst_cell(method: MethodRuns, currency: str) -> Cell:
     worst = method.worst_run
     if worst is None:
-        return Cell(DASH)
+        return NOTHING
     gap = "" if worst.gap_to_optimum is None else f"(gap {percent(worst.gap_to_optimum)})"
     return Cell(money(worst.energy_cost, currency), gap)

@@ -79,8 +79,8 @@ def robustness_markdown(found: Robustness) -> str:
 
 
 LEGEND = (
-    "Mean share of savings at equal comfort in the home as it is under the fault (worst run), mean deviation "
-    "in °C, slots in which the safety layer intervened."
+    "Mean share of savings at the same deviation in the home as it is under the fault (worst run), mean "
+    "deviation in °C, slots in which the safety layer intervened."
 )
 
 

@@ -51,7 +51,7 @@ def transfer_figure(transfer: Transfer) -> Figure:
     left.axvline(0.0, color=FAINT, lw=0.9)
     left.set_xlim(LOWEST, 1.04)
     left.xaxis.set_major_formatter(PercentFormatter(1.0, symbol="\u00a0%"))
-    left.set_xlabel("Share of savings at equal comfort")
+    left.set_xlabel("Share of savings at the same deviation")
     right.set_xlim(left=0.0)
     right.set_xlabel("Mean deviation from comfort (°C)")
     for number, name in enumerate(transfer.methods):

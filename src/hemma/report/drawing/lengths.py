@@ -1,4 +1,4 @@
-"""Panels (a) and (b): what more days of demonstrations bring."""
+"""A metric against demonstration length: what more days of demonstrations bring."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -8,7 +8,6 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from hemma.evaluation import Intervals, Metrics
 from hemma.report.drawing.canvas import FAINT, legend_above, say_nothing_to_show
-from hemma.report.drawing.rows import above_zero
 from hemma.report.methods import in_order, look_of
 from hemma.report.numbers import decimals, plain
 from hemma.results.records import DemonstrationRuns
@@ -29,22 +28,6 @@ class Quantity:
     read_interval: Callable[[Intervals], tuple[float, float] | None]
 
 
-TOTAL_DEVIATION = Quantity(
-    "Total temperature deviation (°C)",
-    lambda metrics: metrics.total_temperature_deviation,
-    lambda intervals: above_zero(intervals.total_temperature_deviation),
-)
-
-
-def energy_cost_of(home: HomeResults) -> Quantity:
-    """The energy cost in the home's currency."""
-    return Quantity(
-        f"Energy cost of the test period ({home.currency})",
-        lambda metrics: metrics.energy_cost,
-        lambda intervals: intervals.energy_cost,
-    )
-
-
 def demonstration_lengths(home: HomeResults) -> tuple[DemonstrationRuns, ...]:
     """The runs by demonstration length; without such a study HA-1 and HA-2 are two lengths of one method."""
     if home.data_efficiency:
@@ -56,24 +39,8 @@ def demonstration_lengths(home: HomeResults) -> tuple[DemonstrationRuns, ...]:
     )
 
 
-def draw_cost_by_length(axes: Axes, home: HomeResults) -> None:
-    """Panel (a): total energy cost against demonstration length."""
-    axes.set_title("(a) Energy cost and demonstrations")
-    _draw(axes, home, energy_cost_of(home))
-
-
-def draw_deviation_by_length(axes: Axes, home: HomeResults) -> None:
-    """Panel (b): total temperature deviation against demonstration length, linear below 1 degC."""
-    axes.set_title("(b) Comfort and demonstrations")
-    axes.set_yscale("symlog", linthresh=1.0)
-    _draw(axes, home, TOTAL_DEVIATION)
-    if axes.axison:
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
-        axes.yaxis.set_minor_locator(NullLocator())
-        axes.set_ylim(bottom=0.0)
-
-
-def _draw(axes: Axes, home: HomeResults, quantity: Quantity) -> None:
+def draw_by_length(axes: Axes, home: HomeResults, quantity: Quantity) -> None:
+    """Lines over the lengths, and the levels of methods that were not trained on several."""
     points = demonstration_lengths(home)
     if not points:
         say_nothing_to_show(axes, "No runs over demonstration length\nin this results folder.")
@@ -167,3 +134,10 @@ def _label_lengths(axes: Axes, lengths: list[float]) -> None:
             transform=axes.transAxes,
             color=FAINT,
         )
+
+
+def told_by_length(home: HomeResults, written: Callable[[Metrics], str]) -> str:
+    """Every method and length with its mean, in words."""
+    points = sorted(demonstration_lengths(home), key=lambda point: point.days)
+    told = "; ".join(f"{p.method} with {plain(p.days)} days {written(p.mean)}" for p in points)
+    return told or "no such runs"

@@ -11,8 +11,9 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 
 from hemma.report.drawing.canvas import FAINT, INK, literal, new_figure
 from hemma.report.drawing.labels import Label, place_labels
+from hemma.report.figures.figure import HomeFigure, Section, Words
 from hemma.report.methods import in_order, look_of
-from hemma.report.numbers import plain, rough
+from hemma.report.numbers import degrees, money, plain, rough
 from hemma.results.findings import ParetoPoint
 from hemma.results.results import HomeResults
 
@@ -25,7 +26,7 @@ _MARGIN = 0.08
 
 
 @dataclass(frozen=True)
-class Sweep:
+class SweptSeries:
     """The points of one series, by the value of what was swept."""
 
     name: str
@@ -60,12 +61,12 @@ def parameter_name(point: ParetoPoint) -> str:
     return literal(point.parameter).replace("beta_T", r"$\beta_T$")
 
 
-def sweeps_of(home: HomeResults) -> list[Sweep]:
+def sweeps_of(home: HomeResults) -> list[SweptSeries]:
     """The series that have points, the frontier first; each in the order of what was swept."""
     known = [p for p in home.pareto if None not in (p.energy_cost, p.mean_temperature_deviation)]
     names = dict.fromkeys([*(p.series for p in known if p.series == FRONTIER), *(p.series for p in known)])
     return [
-        Sweep(
+        SweptSeries(
             name,
             tuple(
                 sorted(
@@ -115,14 +116,14 @@ def pareto_figure(home: HomeResults) -> Figure:
     return figure
 
 
-def _cut(methods: Sequence[Standing], sweeps: Sequence[Sweep]) -> float:
+def _cut(methods: Sequence[Standing], sweeps: Sequence[SweptSeries]) -> float:
     """The cost below which three quarters of the methods stand, and the whole frontier."""
     frontier = [float(np.max(sweep.track[:, 1])) for sweep in sweeps if sweep.name == FRONTIER]
     costs = sorted(m.cost for m in methods)
     return max([costs[(3 * len(costs)) // 4] if len(costs) > 3 else costs[-1], *frontier])
 
 
-def _draw(axes: Axes, sweeps: Sequence[Sweep], methods: Sequence[Standing]) -> None:
+def _draw(axes: Axes, sweeps: Sequence[SweptSeries], methods: Sequence[Standing]) -> None:
     axes.set_xscale("symlog", linthresh=LINEAR_BELOW, linscale=0.5)
     for sweep in sweeps:
         look, (x, y) = look_of(sweep.name), sweep.track.T
@@ -155,7 +156,7 @@ def _draw(axes: Axes, sweeps: Sequence[Sweep], methods: Sequence[Standing]) -> N
 
 
 def _limit(
-    axes: Axes, costs: tuple[float, float], sweeps: Sequence[Sweep], methods: Sequence[Standing]
+    axes: Axes, costs: tuple[float, float], sweeps: Sequence[SweptSeries], methods: Sequence[Standing]
 ) -> None:
     low, high = costs
     margin = _MARGIN * (high - low) or 1.0
@@ -174,7 +175,7 @@ def _frame(axes: Axes, enlarged: Axes) -> None:
 
 
 def _name(
-    axes: Axes, methods: Sequence[Standing], sweeps: Sequence[Sweep], costs: tuple[float, float]
+    axes: Axes, methods: Sequence[Standing], sweeps: Sequence[SweptSeries], costs: tuple[float, float]
 ) -> None:
     """The names of the methods, and of each sweep the value at either end if it is among the costs."""
     ends = [
@@ -192,3 +193,35 @@ def _name(
     ]
     names = [Label(literal(m.name), m.deviation, m.cost, INK) for m in methods]
     place_labels(axes, [*names, *ends], [sweep.track for sweep in sweeps])
+
+
+def _words(home: HomeResults) -> Words:
+    methods = "; ".join(
+        f"{m.name} {money(m.cost, home.currency)} at {degrees(m.deviation)}" for m in standings(home)
+    )
+    sweeps = sweeps_of(home)
+    swept = "; ".join(
+        f"{sweep.name}, {point.parameter.replace('beta_T', 'weight of comfort')} {rough(point.value)}: "
+        f"{money(point.energy_cost, home.currency)} at {degrees(point.mean_temperature_deviation)}"
+        for sweep in sweeps
+        for point in sweep.points
+        if point.value is not None
+    )
+    has_frontier = any(sweep.name == FRONTIER for sweep in sweeps)
+    proven = "No controller can stand below the black line: it is proven for each deviation. "
+    return Words(
+        "Cost against comfort",
+        f"Energy cost at mean deviation. Methods: {methods}. Sweeps: {swept or 'none'}.",
+        f"{proven if has_frontier else ''}Down is cheaper, left is more comfortable. The small marks show "
+        "what one method reaches when the weight of comfort, or the band that it is given, is changed.",
+    )
+
+
+COST_AND_COMFORT = HomeFigure[HomeResults](
+    name="cost-and-comfort",
+    section=Section("Cost against comfort"),
+    needs=lambda subject: subject.home if sweeps_of(subject.home) and standings(subject.home) else None,
+    draw=pareto_figure,
+    words=_words,
+    missing="No sweep of cost against comfort in this folder.",
+)

@@ -1,82 +1,32 @@
 """Learning curves: how cost and comfort on the training days went with the training of every method."""
 
-from dataclasses import dataclass
+import math
 
 import numpy as np
-from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
 from hemma.report.drawing.canvas import INK, new_figure
-from hemma.report.methods import in_order, look_of
-from hemma.report.numbers import plain
-from hemma.report.series import SeriesReader, TrainingCurve
-from hemma.results.results import HomeResults
+from hemma.report.drawing.spread import COST, DEVIATION, SHARE_LABEL, Spread, mark_shares, spread_of
+from hemma.report.figures.figure import LEARNING, HomeFigure, Words
+from hemma.report.methods import look_of
+from hemma.report.numbers import money, plain
+from hemma.report.subject import Curves, HomeSubject
 
-COST, DEVIATION = "train_energy_cost", "train_temperature_deviation"
-MOST_POINTS = 150
-"""A longer curve is drawn as means of equally many neighbouring rows."""
 COLUMNS, _FEWEST_COLUMNS = 5, 3
-SHARE_LABEL = "Share of training (%)"
 _OTHERS = "#C9C9C9"
 _LINEAR_BELOW = 0.1
 """Deviation [degC/day] below which its axis is linear."""
 
-Curves = dict[str, list[TrainingCurve]]
-"""The training curves of a home by method."""
 
-
-@dataclass(frozen=True)
-class Spread:
-    """A quantity over the training, over the seeds of a method."""
-
-    share: Float[np.ndarray, "points"]
-    """How much of the training was over, as a fraction."""
-    mean: Float[np.ndarray, "points"]
-    low: Float[np.ndarray, "points"]
-    high: Float[np.ndarray, "points"]
-
-
-def read_curves(reader: SeriesReader, home: HomeResults) -> Curves:
-    """The training curves of a home by method; methods without any are left out."""
-    named = {
-        name: [run.curve for run in home.methods[name].runs if run.curve] for name in in_order(home.methods)
-    }
-    return {name: [reader.curve(path) for path in paths] for name, paths in named.items() if paths}
-
-
-def spread_of(runs: list[TrainingCurve], quantity: str) -> Spread | None:
-    """Mean and range over the runs that have the quantity; None if none has it.
-
-    Runs of another number of iterations are brought to the shares of training of the first.
-    """
-    having = [run for run in runs if quantity in run.quantities]
-    if not having:
-        return None
-    share = thinned(having[0].share)
-    values = [np.interp(share, thinned(run.share), thinned(run.quantities[quantity])) for run in having]
-    return Spread(share, np.mean(values, axis=0), np.min(values, axis=0), np.max(values, axis=0))
-
-
-def thinned(values: np.ndarray) -> np.ndarray:
-    """Means of neighbouring rows, at most about ``MOST_POINTS`` of them; the last group may be smaller."""
-    size = -(-len(values) // MOST_POINTS)
-    return np.array([np.mean(values[first : first + size]) for first in range(0, len(values), size)])
-
-
-def learning_figure(home: HomeResults, curves: Curves) -> Figure | None:
-    """Cost above, deviation below: a small panel a method, the others' means in grey behind it.
-
-    None where no run was measured on its training days.
-    """
-    costs, deviations = _spreads(curves, COST), _spreads(curves, DEVIATION)
-    if not costs and not deviations:
-        return None
+def learning_figure(subject: HomeSubject) -> Figure:
+    """Cost above, deviation below: a small panel a method, the others' means in grey behind it."""
+    costs, deviations = _spreads(subject.curves, COST), _spreads(subject.curves, DEVIATION)
     rows = -(-max(len(costs), len(deviations)) // COLUMNS)
     figure = new_figure(9.2, 1.0 + 3.1 * rows)
     above, below = figure.subfigures(2, 1, squeeze=False).ravel()
-    panels = _block(above, costs, f"Energy cost on the training days ({home.currency}/day)")
+    panels = _block(above, costs, f"Energy cost on the training days ({subject.home.currency}/day)")
     if panels:
         panels[0].set_ylim(_limits(costs))
     panels = _block(below, deviations, "Temperature deviation on the training days (°C/day)")
@@ -87,12 +37,6 @@ def learning_figure(home: HomeResults, curves: Curves) -> Figure | None:
         axes.set_ylim(0.0, 1.6 * max([_LINEAR_BELOW, *_edges(deviations)]))
     below.supxlabel(SHARE_LABEL, fontsize=9.0)
     return figure
-
-
-def mark_shares(axes: Axes) -> None:
-    """The start, the middle and the end of the training below the axes."""
-    axes.set_xlim(0.0, 1.0)
-    axes.set_xticks([0.0, 0.5, 1.0], ["0", "50", "100"])
 
 
 def _spreads(curves: Curves, quantity: str) -> dict[str, Spread]:
@@ -139,3 +83,40 @@ def _edges(spreads: dict[str, Spread]) -> np.ndarray:
     """All ends of the ranges that are numbers: a learner may lose itself."""
     values = np.concatenate([edge for spread in spreads.values() for edge in (spread.low, spread.high)])
     return values[np.isfinite(values)]
+
+
+def _measured(subject: HomeSubject) -> HomeSubject | None:
+    """None where no run was measured on its training days."""
+    quantities = (quantity for runs in subject.curves.values() for run in runs for quantity in run.quantities)
+    return subject if {COST, DEVIATION} & set(quantities) else None
+
+
+def _words(subject: HomeSubject) -> Words:
+    ends = "; ".join(
+        f"{name} {_last(spread, subject.home.currency)} a day"
+        for name, spread in _spreads(subject.curves, COST).items()
+    )
+    return Words(
+        "Learning curves",
+        "Energy cost and temperature deviation on the training days over the training. Cost at the end: "
+        f"{ends}.",
+        "Line: mean over the seeds; area: their range; grey: the means of the other methods. Measured with "
+        "the mean action on the training days, never on the test period. The shares of training make methods "
+        "comparable whose iterations are of another kind.",
+    )
+
+
+def _last(spread: Spread, currency: str) -> str:
+    """The mean at the end of the training; a dash where a learner lost itself."""
+    cost = float(spread.mean[-1])
+    return money(cost if math.isfinite(cost) else None, currency)
+
+
+TRAINING_CURVES = HomeFigure[HomeSubject](
+    name="training-curves",
+    section=LEARNING,
+    needs=_measured,
+    draw=learning_figure,
+    words=_words,
+    missing="No training curve in this folder.",
+)

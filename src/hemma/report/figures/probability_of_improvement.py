@@ -8,10 +8,12 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from hemma.report.drawing.canvas import new_figure
+from hemma.report.drawing.canvas import FULL_WIDTH, new_figure
+from hemma.report.figures.figure import HomeFigure, ReportFigure, Section, Words
 from hemma.report.methods import in_order
 from hemma.report.numbers import decimals
 from hemma.results.findings import Improvement
+from hemma.results.results import HomeResults, Results
 
 _COLOURS = LinearSegmentedColormap.from_list(
     "better", ["#EDA873", "#FBEDE1", "#FFFFFF", "#E3EFF7", "#74B3DC"]
@@ -19,12 +21,14 @@ _COLOURS = LinearSegmentedColormap.from_list(
 """Vermillion for worse, blue for better, both light enough for black numbers."""
 _PALE = 0.25
 """What is left of the colour where the interval holds one half and nobody can tell which is better."""
+NOT_LEARNED = ("MPC forecast", "thresholds")
+"""What the learned methods are compared with, run by run, beside each other."""
 _CELL = 0.72
 """Side [inch] of a cell."""
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Chances:
     """All pairs of methods."""
 
     methods: tuple[str, ...]
@@ -32,7 +36,7 @@ class Comparison:
     """By (method, over); both directions of every pair that is known."""
 
 
-def comparison_of(improvements: Sequence[Improvement], methods: Iterable[str] | None = None) -> Comparison:
+def comparison_of(improvements: Sequence[Improvement], methods: Iterable[str] | None = None) -> Chances:
     """The pairs among ``methods`` (all if None); a pair given one way only is turned around."""
     wanted = None if methods is None else set(methods)
     known = [
@@ -43,14 +47,14 @@ def comparison_of(improvements: Sequence[Improvement], methods: Iterable[str] | 
     pairs = {(entry.over, entry.method): _turned(entry) for entry in known}
     pairs |= {(entry.method, entry.over): entry for entry in known}
     named = in_order(dict.fromkeys(name for pair in pairs for name in pair))
-    return Comparison(tuple(named), pairs)
+    return Chances(tuple(named), pairs)
 
 
-def improvement_figure(comparison: Comparison) -> Figure:
+def improvement_figure(comparison: Chances) -> Figure:
     """A table of colours and numbers; a row is the method that is asked about, a column the one it meets."""
     methods = comparison.methods
     side = _CELL * len(methods)
-    figure = new_figure(max(4.2, side + 2.0), max(2.6, 0.62 * side + 1.3))
+    figure = new_figure(max(FULL_WIDTH, side + 2.0), max(2.6, 0.62 * side + 1.3))
     axes = figure.add_subplot()
     for (method, over), entry in comparison.pairs.items():
         _draw_cell(axes, methods.index(method), methods.index(over), entry)
@@ -91,3 +95,53 @@ def _turned(entry: Improvement) -> Improvement:
     chance = None if entry.probability is None else 1 - entry.probability
     interval = None if entry.interval is None else (1 - entry.interval[1], 1 - entry.interval[0])
     return Improvement(method=entry.over, over=entry.method, probability=chance, interval=interval)
+
+
+def _of_home(home: HomeResults) -> Chances | None:
+    """Among the learned methods and two others: what knows nothing by chance either beats another or not."""
+    found = comparison_of(home.probability_of_improvement, _compared([home]))
+    return found if found.methods else None
+
+
+def _over_homes(results: Results) -> Chances | None:
+    pairs = results.aggregate.probability_of_improvement if results.aggregate else ()
+    found = comparison_of(pairs, _compared(results.finished.values()))
+    return found if found.methods else None
+
+
+def _compared(homes: Iterable[HomeResults]) -> set[str]:
+    learned = {name for home in homes for name, method in home.methods.items() if method.is_learned}
+    return learned | set(NOT_LEARNED) if learned else set()
+
+
+def _words(comparison: Chances, over: str) -> Words:
+    """``over`` says what the runs are of."""
+    pairs = "; ".join(
+        f"{method} over {other} {decimals(entry.probability, 2)}"
+        for (method, other), entry in comparison.pairs.items()
+        if comparison.methods.index(method) < comparison.methods.index(other)
+    )
+    return Words(
+        "How probably one method beats another",
+        f"Probability that a run of the first has the lower regret: {pairs}.",
+        f"Over all pairs of runs {over}, ties count half; below it the 95 % interval, which is over other "
+        "seeds alone. One half means that nobody can tell which is better; the colour is pale where the "
+        "interval holds one half and leaves it open.",
+    )
+
+
+PROBABILITY_OF_IMPROVEMENT = HomeFigure[Chances](
+    name="probability-of-improvement",
+    section=Section("How sure the differences are"),
+    needs=lambda subject: _of_home(subject.home),
+    draw=improvement_figure,
+    words=lambda comparison: _words(comparison, "of this home"),
+    missing="No learned method is compared with another run by run in this folder.",
+)
+IMPROVEMENT_OVER_HOMES = ReportFigure[Results, Chances](
+    name="probability-of-improvement",
+    section=Section("How sure the differences are"),
+    needs=_over_homes,
+    draw=improvement_figure,
+    words=lambda comparison: _words(comparison, "on the same home"),
+)

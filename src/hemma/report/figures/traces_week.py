@@ -11,8 +11,11 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from hemma.report.drawing.canvas import FAINT, midnights, new_figure
-from hemma.report.figures.panels_time import PRICE_COLOUR, step_values
+from hemma.report.drawing.over_time import PRICE_COLOUR, step_values
+from hemma.report.figures.figure import HomeFigure, Section, Words
 from hemma.report.methods import GREEN, look_of
+from hemma.report.numbers import plain
+from hemma.report.subject import HomeSubject
 from hemma.report.week import Week
 from hemma.results.results import HomeResults
 
@@ -27,7 +30,7 @@ _PRICE_SHARE = 0.75
 
 
 @dataclass(frozen=True)
-class Cell:
+class SmallPanels:
     """The two panels of a method."""
 
     temperature: Axes
@@ -61,7 +64,7 @@ def traces_figure(home: HomeResults, week: Week) -> Figure:
     return figure
 
 
-def _cells(figure: Figure, count: int) -> list[Cell]:
+def _cells(figure: Figure, count: int) -> list[SmallPanels]:
     """The panels, with labels at the left and at the lower edge only."""
     width, height = figure.get_size_inches()
     outer = GridSpec(
@@ -87,7 +90,7 @@ def _cells(figure: Figure, count: int) -> list[Cell]:
             axes.set_ylabel(unit if place % COLUMNS == 0 else "", fontsize=7.5)
         above.tick_params(labelbottom=False, bottom=False)
         below.tick_params(labelbottom=place + COLUMNS >= count)
-        cells.append(Cell(above, below))
+        cells.append(SmallPanels(above, below))
     return cells
 
 
@@ -146,3 +149,32 @@ def _explain(figure: Figure, home: HomeResults, week: Week) -> None:
         fontsize=8.0,
         color=FAINT,
     )
+
+
+def _words(subject: HomeSubject) -> Words:
+    (low, high), week = subject.home.comfort_c, subject.week
+    ranges = "; ".join(
+        f"{name} {_range(schedule.indoor_temperature)} °C, battery {_range(schedule.battery_energy)} kWh"
+        for name, schedule in week.schedules.items()
+    )
+    return Words(
+        f"What every method does in week {week.number} of the test period",
+        f"Ranges of indoor temperature and battery energy of each method in the week: {ranges}.",
+        f"Of each method, above: indoor temperature, with the comfort band from {plain(low)} to "
+        f"{plain(high)} °C; below: battery energy, with the buying price in grey. All panels share their "
+        "scales; of several seeds the one of median cost is shown.",
+    )
+
+
+def _range(values: np.ndarray) -> str:
+    return f"{plain(round(float(values.min()), 1))} to {plain(round(float(values.max()), 1))}"
+
+
+TRACES_WEEK = HomeFigure[HomeSubject](
+    name="traces-week",
+    section=Section("A week of every method"),
+    needs=lambda subject: subject if subject.week.schedules else None,
+    draw=lambda subject: traces_figure(subject.home, subject.week),
+    words=_words,
+    missing="No schedule in this folder.",
+)

@@ -6,12 +6,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from hemma.report.comfort import at_equal_comfort
 from hemma.report.drawing.canvas import INK, new_figure
 from hemma.report.drawing.rows import label_rows, method_rows, rows_height, write_value
+from hemma.report.figures.figure import HomeFigure, Section, Words
 from hemma.report.methods import BLUE, GREY, ORANGE, SKY
-from hemma.report.numbers import decimals
+from hemma.report.numbers import decimals, money
 from hemma.results.results import HomeResults
 
+REGRET_SECTION = Section("Where the regret comes from")
 PARTS = (
     ("not knowing the future", BLUE, ""),
     ("identified thermal model", SKY, "////"),
@@ -36,7 +39,7 @@ def regret_figure(home: HomeResults) -> Figure:
         write_value(axes, place, max(reach, split.total, 0.0), decimals(split.total, 2))
     label_rows(axes, rows)
     axes.axvline(0.0, color=INK, linewidth=0.9)
-    axes.set_xlabel(f"Cost above perfect information at equal comfort ({home.currency})")
+    axes.set_xlabel(f"Cost above perfect information {at_equal_comfort(home)} ({home.currency})")
     axes.margins(x=0.1)
     _explain(figure, home)
     return figure
@@ -65,3 +68,25 @@ def _explain(figure: Figure, home: HomeResults) -> None:
         Line2D([], [], marker="D", color="white", markeredgecolor=INK, markersize=5, lw=0, label="sum")
     )
     figure.legend(handles=handles, loc="outside upper left", ncols=5)
+
+
+def _words(home: HomeResults) -> Words:
+    totals = "; ".join(
+        f"{name} {money(split.total, home.currency)}" for name, split in home.regret.items() if split.total
+    )
+    return Words(
+        "What stands between each method and perfect information",
+        f"Stacked bars of the regret: {totals or 'no totals'}. The table below has the parts.",
+        f"Regret is the cost above perfect information {at_equal_comfort(home)}. Parts right of zero cost, "
+        "parts left of it save; the diamond is their sum.",
+    )
+
+
+REGRET = HomeFigure[HomeResults](
+    name="regret",
+    section=REGRET_SECTION,
+    needs=lambda subject: subject.home if subject.home.regret else None,
+    draw=regret_figure,
+    words=_words,
+    missing="The regret is not split in this folder.",
+)

@@ -1,17 +1,21 @@
 """The identified network running on its own beside the measurement."""
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from hemma.report.drawing.canvas import FAINT, INK, days_below, legend_above, new_figure
+from hemma.report.figures.figure import IDENTIFICATION, HomeFigure, Words
 from hemma.report.methods import BLUE, VERMILLION
 from hemma.report.series import FreeRun
+from hemma.report.week import WEEK_DAYS
 
 
-def free_run_figure(run: FreeRun, slots: int) -> Figure:
-    """The first ``slots`` slots of a free run beside the measurement, and its error over the whole period."""
+def free_run_figure(run: FreeRun) -> Figure:
+    """The first week of a free run beside the measurement, and its error over the whole period."""
     figure = new_figure(9.2, 5.0)
     above, below = figure.subplots(2, 1)
-    count = min(slots, len(run.measured))
+    start = run.clock.start
+    count = int(np.searchsorted(start, start[0] + np.timedelta64(WEEK_DAYS, "D")))
     posts = run.clock.fence_posts(count)
     above.set_title("The identified network on its own, first days")
     above.plot(posts[:-1], run.measured[:count], color=INK, label="measured")
@@ -27,3 +31,16 @@ def free_run_figure(run: FreeRun, slots: int) -> Figure:
     days_below(below, whole[0], whole[-1])
     below.set_xlabel(f"Local time ({run.clock.offset})")
     return figure
+
+
+FREE_RUN = HomeFigure[FreeRun](
+    name="free-run",
+    section=IDENTIFICATION,
+    needs=lambda subject: subject.free_run,
+    draw=free_run_figure,
+    words=lambda _: Words(
+        "Free run of the identified network",
+        "Measured and predicted indoor temperature for the first days, and the error over the period.",
+        "The network is given the first temperature only and then runs on its own predictions.",
+    ),
+)

@@ -6,8 +6,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hemma.report.drawing.canvas import new_figure
-from hemma.report.figures.panels_curves import COST, DEVIATION, SHARE_LABEL, Curves, mark_shares, spread_of
+from hemma.report.drawing.spread import COST, DEVIATION, SHARE_LABEL, mark_shares, spread_of
+from hemma.report.figures.figure import LEARNING, HomeFigure, Words
 from hemma.report.methods import look_of
+from hemma.report.subject import Curves
 
 COLUMNS = 3
 
@@ -50,11 +52,9 @@ def diagnostics_of(curves: Curves) -> list[Diagnostic]:
     ]
 
 
-def diagnostics_figure(curves: Curves) -> Figure | None:
-    """A panel a quantity, a line a method: mean and range over the seeds; None if there is nothing."""
+def diagnostics_figure(curves: Curves) -> Figure:
+    """A panel a quantity, a line a method: mean and range over the seeds."""
     diagnostics = diagnostics_of(curves)
-    if not diagnostics:
-        return None
     columns = min(COLUMNS, len(diagnostics))
     rows = -(-len(diagnostics) // columns)
     figure = new_figure(9.2, 0.7 + 1.9 * rows)
@@ -89,3 +89,22 @@ def _draw(axes: Axes, diagnostic: Diagnostic, curves: Curves) -> list[str]:
         axes.plot(spread.share, spread.mean, color=look.colour, linestyle=look.line, lw=1.3)
         drawn.append(name)
     return drawn
+
+
+def _words(curves: Curves) -> Words:
+    names = [diagnostic.title.lower() for diagnostic in diagnostics_of(curves)]
+    return Words(
+        "What else the learners wrote down",
+        f"Over the training: {', '.join(names)}.",
+        "Line: mean over the seeds; area: their range. Recognised transitions near one half mean that the "
+        "discriminator can no longer tell agent from expert.",
+    )
+
+
+TRAINING_DIAGNOSTICS = HomeFigure[Curves](
+    name="training-diagnostics",
+    section=LEARNING,
+    needs=lambda subject: subject.curves if diagnostics_of(subject.curves) else None,
+    draw=diagnostics_figure,
+    words=_words,
+)

@@ -4,8 +4,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
+from hemma.report.comfort import at_equal_comfort
 from hemma.report.drawing.canvas import FAINT, INK, new_figure
 from hemma.report.drawing.rows import label_rows, method_rows, rows_height, write_value
+from hemma.report.figures.figure import ReportFigure, Section, Words
 from hemma.report.methods import look_of
 from hemma.report.numbers import percent
 from hemma.results.findings import Aggregated
@@ -57,7 +59,8 @@ def homes_figure(results: Results) -> Figure:
     lowest = min(min(by_home.values()) for by_home in shares.values())
     axes.set_xlim(max(LOWEST, min(0.0, lowest)) - 0.03, 1.12)
     axes.xaxis.set_major_formatter(PercentFormatter(1.0, symbol="\u00a0%"))
-    axes.set_xlabel("Share of savings: 0 % is no battery, 100 % perfect information, at equal comfort")
+    condition = at_equal_comfort(*results.finished.values())
+    axes.set_xlabel(f"Share of savings: 0 % is no battery, 100 % perfect information, {condition}")
     _explain(figure, axes, results)
     return figure
 
@@ -98,3 +101,32 @@ def _explain(figure: Figure, axes: Axes, results: Results) -> None:
     if results.aggregate is not None:
         axes.plot([], [], "o-", color=INK, lw=2.0, markersize=6.5, label="all homes, 95 % interval")
     figure.legend(loc="outside upper left", ncols=4)
+
+
+def _words(results: Results) -> Words:
+    told = []
+    for name, by_home in shares_by_home(results).items():
+        mean = over_homes(results, name).mean
+        overall = "" if mean is None else f"{percent(mean)} over all, "
+        if by_home:
+            told.append(f"{name} {overall}{', '.join(f'{home} {percent(s)}' for home, s in by_home.items())}")
+    has_mean = any(over_homes(results, name).mean is not None for name in shares_by_home(results))
+    coloured = (
+        "The coloured mark and the number are the mean over all homes, the bar is its 95 % interval for "
+        "other seeds on the same homes. "
+    )
+    return Words(
+        "Share of savings on every home",
+        f"Points of the share of savings: {'; '.join(told)}.",
+        f"One grey mark a home, the mean over its seeds. {coloured if has_mean else ''}Shares far below zero "
+        "are written at the left edge.",
+    )
+
+
+SHARE_OF_SAVINGS = ReportFigure[Results, Results](
+    name="share-of-savings",
+    section=Section("Home by home"),
+    needs=lambda it: it if len(it.finished) > 1 and any(shares_by_home(it).values()) else None,
+    draw=homes_figure,
+    words=_words,
+)
