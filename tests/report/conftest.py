@@ -36,7 +36,7 @@ def undrawn(monkeypatch) -> None:
             (folder / f"{name}.{ending}").write_bytes(b"<svg/>")
         return b"<svg/>"
 
-    monkeypatch.setattr("hemma.report.figures.save", save)
+    monkeypatch.setattr("hemma.report.pictures.save", save)
 
 
 @pytest.fixture

@@ -9,9 +9,9 @@ import pytest
 from synthetic_results import save_results, write_results
 
 from hemma.errors import HemmaError
-from hemma.report.compare import compare
-from hemma.report.comparison_files import comparison_document, write_comparison
-from hemma.report.comparison_page import comparison_page
+from hemma.report.comparison.compare import compare
+from hemma.report.comparison.files import comparison_document, write_comparison
+from hemma.report.comparison.page import comparison_page
 from hemma.results.results import load_results
 
 HOMES = ("home-1", "home-2")
@@ -66,12 +66,12 @@ def test_differences_are_those_of_the_files(two):
 
 def test_improvement_is_that_of_the_second_folder_over_the_first(two):
     before, after, _ = two
-    cheaper_one = found(compare([before, after]), "home-1", "HA-1")[1].difference.improvement
+    cheaper_one = found(compare([before, after]), "home-1", "HA-1")[1].improvement
     assert cheaper_one.probability == 1.0
     assert 0.3 < cheaper_one.interval.low < 1.0
-    dearer_one = found(compare([after, before]), "home-1", "HA-1")[1].difference.improvement
+    dearer_one = found(compare([after, before]), "home-1", "HA-1")[1].improvement
     assert dearer_one.probability == 0.0
-    rule = found(compare([before, after]), "home-1", "Rule")[1].difference.improvement
+    rule = found(compare([before, after]), "home-1", "Rule")[1].improvement
     assert (rule.probability, rule.interval) == (0.5, None)
 
 
@@ -120,10 +120,11 @@ def test_on_other_data_only_ratios_are_compared(two, change, reason):
     [note] = comparison.homes[0].notes
     assert note.endswith("only ratios can be compared")
     assert re.search(reason, note)
-    difference = found(comparison, "home-1", "HA-1")[1].difference
+    second = found(comparison, "home-1", "HA-1")[1]
+    difference = second.difference
     assert difference.share_of_savings is not None
     assert difference.gap_to_optimum is not None
-    assert difference.energy_cost is difference.mean_temperature_deviation is difference.improvement is None
+    assert difference.energy_cost is difference.mean_temperature_deviation is second.improvement is None
     assert comparison.homes[1].notes == ()
     assert found(comparison, "home-2", "HA-1")[1].difference.energy_cost is not None
     assert all(one.improvement is None for one in comparison.over_homes)
@@ -153,8 +154,8 @@ def test_a_missing_metric_has_no_difference(two):
     method["mean"]["gap_to_optimum"] = None
     method["runs"][0]["regret"] = None
     save_results(after, content)
-    difference = found(compare([before, after]), "home-1", "HA-1")[1].difference
-    assert difference.gap_to_optimum is difference.improvement.probability is None
+    second = found(compare([before, after]), "home-1", "HA-1")[1]
+    assert second.difference.gap_to_optimum is second.improvement.probability is None
 
 
 def test_what_cannot_be_compared_is_refused(two, tmp_path):
@@ -206,7 +207,7 @@ def test_the_csv_has_a_row_for_each_method_and_folder(two, tmp_path):
     assert float(row["energy_cost"]) == second.mean.energy_cost
     assert float(row["energy_cost_difference"]) == second.difference.energy_cost
     assert math.isclose(float(row["share_of_savings_high"]), second.interval.share_of_savings[1])
-    assert float(row["probability_low"]) == second.difference.improvement.interval.low
+    assert float(row["probability_low"]) == second.improvement.interval.low
     assert rows[0]["energy_cost_difference"] == ""
 
 
@@ -223,7 +224,7 @@ def test_the_page_stands_alone(two, tmp_path):
     assert html == comparison_page(comparison)
     assert "&lt;b&gt;" in html
     assert "<b>" not in html
-    assert "http" not in html
+    assert not re.search("https?:", html)
     for text in ("home-2", "All homes", "Better than A", str(before)):
         assert text in html
 

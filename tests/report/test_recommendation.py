@@ -1,6 +1,7 @@
 """The recommendation in words: what is taken, what it cost, and why not another."""
 
-from hemma.report.recommendation import recommendation_rows, recommendation_section, recommendation_sentence
+from hemma.report.page.home import recommendation_section
+from hemma.report.tables.recommendation import recommendation_rows, recommendation_sentence
 from hemma.results.results import HomeResults
 
 JUDGED = [

@@ -9,15 +9,16 @@ from synthetic_results import save_results, write_results
 
 from hemma.evaluation import RegretSplit
 from hemma.report import write_report
-from hemma.report.canvas import drawing_style, new_figure
-from hemma.report.labels import Label, place_labels
-from hemma.report.overview import differences_of, worst_over_homes
-from hemma.report.panels_homes import homes_figure
-from hemma.report.panels_improvement import comparison_of, improvement_figure
-from hemma.report.panels_pareto import pareto_figure, sweeps_of
-from hemma.report.panels_regret import regret_figure
-from hemma.report.rows import method_rows
-from hemma.results.findings import Improvement, PairedDifference
+from hemma.report.drawing.canvas import drawing_style, new_figure
+from hemma.report.drawing.labels import Label, place_labels
+from hemma.report.drawing.rows import method_rows
+from hemma.report.figures.cost_and_comfort import pareto_figure, sweeps_of
+from hemma.report.figures.probability_of_improvement import comparison_of, improvement_figure
+from hemma.report.figures.regret import regret_figure
+from hemma.report.figures.share_of_savings import homes_figure
+from hemma.report.tables.aggregate import differences_of, worst_over_homes
+from hemma.report.tables.cells import Cell
+from hemma.results.findings import Improvement, PairedDifference, ParetoPoint
 from hemma.results.results import HomeResults, Results, load_results
 
 REGRET_BARS = 3
@@ -62,9 +63,9 @@ def test_the_frontier_comes_first_and_in_the_order_of_comfort(home):
     assert [point.value for point in others[0].points] == [0.02, 0.1, 0.3, 1.0]
 
 
-def test_names_do_not_lie_on_each_other_or_outside():
-    generator = np.random.default_rng(0)
-    spots = generator.uniform(0.0, 1.0, (20, 2))
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_names_do_not_lie_on_each_other_or_outside_and_no_line_leads_across_them(seed):
+    spots = np.random.default_rng(seed).uniform(0.3, 0.6, (20, 2))
     with drawing_style():
         figure = new_figure(9.2, 5.6)
         axes = figure.add_subplot()
@@ -77,6 +78,40 @@ def test_names_do_not_lie_on_each_other_or_outside():
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
     frame = axes.get_window_extent()
     assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
+    leaders = [text.arrow_patch for text in axes.texts if text.arrow_patch is not None]
+    assert leaders
+    for leader in leaders:
+        path = leader.get_path().transformed(leader.get_transform())
+        assert not any(path.intersects_bbox(box.padded(-1.0), filled=False) for box in boxes)
+
+
+def test_a_swept_weight_is_a_letter_with_a_subscript_and_a_name_is_never_a_formula(home):
+    point = {"value": 1.0, "energy_cost": 1.0, "mean_temperature_deviation": 0.0}
+    swept = [ParetoPoint(series=r"$\frac{$", parameter="beta_T", **point | {"value": v}) for v in (1.0, 2.0)]
+    assert sweeps_of(home.model_copy(update={"pareto": swept}))[0].legend == (
+        r"\$\frac{\$, $\beta_T$ from 1 to 2"
+    )
+    with drawing_style():
+        figure = pareto_figure(home.model_copy(update={"pareto": swept}))
+        figure.draw_without_rendering()
+    texts = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert any(r"$\beta_T$ 1" in text for text in texts)
+    assert not any("β_T" in text for text in texts)
+
+
+def test_an_open_pair_is_pale_and_a_decided_one_is_not():
+    decided, unsure = (
+        Improvement(method="HA-1", over=over, probability=1.0, interval=interval)
+        for over, interval in (("PPO", (0.6, 1.0)), ("BC", (0.4, 1.0)))
+    )
+    axes = improvement_figure(comparison_of([decided, unsure])).axes[0]
+    colours = {
+        patch.get_xy(): patch.get_facecolor() for patch in axes.patches if isinstance(patch, Rectangle)
+    }
+    columns = {label.get_text(): place for place, label in enumerate(axes.get_xticklabels())}
+    strong, pale = (colours[columns[over] - 0.5, -0.5] for over in ("PPO", "BC"))
+    assert strong[0] < 0.6  # much less red than blue
+    assert min(pale[:3]) > 0.85
 
 
 def test_points_on_each_other_share_a_label():
@@ -149,13 +184,13 @@ def test_shares_far_below_zero_are_written(two_homes):
 
 
 def test_the_worst_run_over_homes_is_found_with_its_home_and_seed(two_homes):
-    worst = worst_over_homes(two_homes, "PPO")
-    assert worst is not None
     runs = {
         (n, r.seed): r.share_of_savings for n, h in two_homes.homes.items() for r in h.methods["PPO"].runs
     }
-    assert (worst.home, worst.run.seed) == min(runs, key=lambda key: runs[key])
-    assert worst_over_homes(two_homes, "DNLP") is None
+    home, seed = min(runs, key=lambda key: runs[key])
+    worst = worst_over_homes(two_homes, "PPO")
+    assert worst == Cell(f"{100 * runs[home, seed]:.1f}\u00a0%", f"{home}, seed {seed}")
+    assert worst_over_homes(two_homes, "DNLP").value == "–"
 
 
 def test_the_main_method_against_the_others_home_by_home():
@@ -182,6 +217,8 @@ def test_several_homes_begin_with_all_methods_over_homes(tmp_path):
     assert f"{100 * mean:.1f}\u00a0%" in page
     assert "HA-1 against the others, home by home" in page
     assert "2 of 2 homes" in page
+    assert "leaves out all that they share: weather, prices, building" in page
+    assert "other homes" not in page
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     assert {"homes-share-of-savings.svg", "homes-probability-of-improvement.png"} <= names
     del content["aggregate"]

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
-from hemma.report.canvas import drawing_style, save
-from hemma.report.panels_curves import COST, DEVIATION, learning_figure, spread_of
-from hemma.report.panels_diagnostics import diagnostics_figure, diagnostics_of
+from hemma.report.drawing.canvas import drawing_style, save
+from hemma.report.drawing.spread import COST, DEVIATION, spread_of
+from hemma.report.figures.training_curves import TRAINING_CURVES, learning_figure
+from hemma.report.figures.training_diagnostics import diagnostics_figure, diagnostics_of
 from hemma.report.series import SeriesReader, TrainingCurve
+from hemma.report.subject import HomeSubject
+from hemma.report.week import read_week
 from hemma.results.results import load_results
 
 
@@ -38,22 +41,25 @@ def test_only_runs_that_have_a_quantity_count():
     assert spread_of([_curve([1.0], other=[1.0])], "loss") is None
 
 
-def test_a_panel_for_each_method_and_both_quantities(written):
+def _subject(written, curves: dict) -> HomeSubject:
     home = load_results(written.folder).homes["austin2021-1"]
+    week = read_week(SeriesReader(written.folder), "austin2021-1", home)
+    return HomeSubject(home, week, curves, free_run=None)
+
+
+def test_a_panel_for_each_method_and_both_quantities(written):
     curves = {
         name: [_curve([25.0, 50.0], **{COST: [2.0, 1.0], DEVIATION: [1.0, 0.0]})] for name in ("HA-1", "BC")
     }
     curves["PPO"] = [_curve([25.0, 50.0], **{COST: [3.0, 1.0]})]
     with drawing_style():
-        figure = learning_figure(home, curves)
-    assert figure is not None
+        figure = learning_figure(_subject(written, curves))
     titles = [axes.get_title(loc="left") for axes in figure.axes if axes.axison]
     assert titles == ["HA-1", "BC", "PPO", "HA-1", "BC"]
 
 
 def test_curves_without_cost_and_deviation_have_no_learning_figure(written):
-    home = load_results(written.folder).homes["austin2021-1"]
-    assert learning_figure(home, {"BC": [_curve([1.0], loss=[1.0])]}) is None
+    assert TRAINING_CURVES.needs(_subject(written, {"BC": [_curve([1.0], loss=[1.0])]})) is None
 
 
 def test_an_unknown_column_gets_a_panel_with_its_own_name():
@@ -66,18 +72,15 @@ def test_an_unknown_column_gets_a_panel_with_its_own_name():
         "Held out error",
     ]
     figure = diagnostics_figure(curves)
-    assert figure is not None
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["BC", "HA-1"]
 
 
 def test_nothing_but_cost_and_deviation_needs_no_diagnostics():
-    assert diagnostics_figure({"PPO": [_curve([1.0], **{COST: [1.0]})]}) is None
+    assert diagnostics_of({"PPO": [_curve([1.0], **{COST: [1.0]})]}) == []
 
 
 @pytest.mark.parametrize("value", ["nan", "inf"])
 def test_a_learner_that_lost_itself_is_still_drawn(written, tmp_path, value):
-    home = load_results(written.folder).homes["austin2021-1"]
     (tmp_path / "curve.csv").write_text(f"iteration,{COST},{DEVIATION}\n25,1.0,{value}\n50,{value},0.1\n")
-    figure = learning_figure(home, {"PPO": [SeriesReader(tmp_path).curve("curve.csv")]})
-    assert figure is not None
-    save(figure, tmp_path, "learning")
+    subject = _subject(written, {"PPO": [SeriesReader(tmp_path).curve("curve.csv")]})
+    save(learning_figure(subject), tmp_path, "learning")

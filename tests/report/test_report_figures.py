@@ -1,23 +1,34 @@
 """What is drawn is what was computed, and drawing leaves no trace in the caller's Matplotlib."""
 
+import os
 import subprocess
 import sys
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from synthetic_results import save_results, write_results
 
+from hemma.evaluation import Intervals
+from hemma.methods import METHODS
 from hemma.report import write_report
-from hemma.report.canvas import drawing_style, new_figure, save
-from hemma.report.figures import HomeSeries, read_series
-from hemma.report.methods import GROUPS, look_of
-from hemma.report.panels_curves import thinned
-from hemma.report.panels_demonstrations import draw_cost_by_length, draw_deviation_by_length
-from hemma.report.panels_methods import draw_costs, draw_deviations
-from hemma.report.panels_time import draw_battery_level, draw_indoor_temperature
+from hemma.report.drawing.canvas import drawing_style, new_figure, save, single
+from hemma.report.drawing.spread import thinned
+from hemma.report.figures import FIGURES
+from hemma.report.figures.figure import HomeFigure, Section, Words
+from hemma.report.figures.panels.battery_level import draw_battery_level
+from hemma.report.figures.panels.cost_by_demonstrations import draw_cost_by_length
+from hemma.report.figures.panels.deviation_by_demonstrations import draw_deviation_by_length
+from hemma.report.figures.panels.energy_cost import draw_costs
+from hemma.report.figures.panels.indoor_temperature import draw_indoor_temperature
+from hemma.report.figures.panels.temperature_deviation import draw_deviations
+from hemma.report.methods import look_of
+from hemma.report.pictures import LIST_FILE
 from hemma.report.series import SeriesReader
+from hemma.report.subject import HomeSubject, read_subject
+from hemma.results.records import DemonstrationRuns
 from hemma.results.results import HomeResults, load_results
 
 NAMES = (
@@ -34,8 +45,8 @@ def home(written) -> HomeResults:
 
 
 @pytest.fixture(scope="module")
-def series(written, home) -> HomeSeries:
-    return read_series(SeriesReader(written.folder), "austin2021-1", home)
+def series(written, home) -> HomeSubject:
+    return read_subject(SeriesReader(written.folder), "austin2021-1", home)
 
 
 def _axes():
@@ -49,7 +60,8 @@ def _line(axes, label):
 
 def test_every_figure_is_written_as_png_and_svg(written):
     figures = written.folder / "figures"
-    assert {path.name for path in figures.iterdir()} == {f"{n}.{e}" for n in NAMES for e in ("png", "svg")}
+    names = {f"{n}.{e}" for n in NAMES for e in ("png", "svg")}
+    assert {path.name for path in figures.iterdir()} == names | {LIST_FILE}
     for name in NAMES:
         assert (figures / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert "<svg" in (figures / f"{name}.svg").read_text(encoding="utf-8")
@@ -140,6 +152,22 @@ def test_panel_d_has_room_for_zero_and_for_the_largest(home):
     assert sorted(drawn) == pytest.approx(sorted(means))
 
 
+def test_no_interval_of_a_deviation_is_drawn_below_zero(home):
+    method = home.methods["GAIL"]
+    wide = Intervals(mean_temperature_deviation=(-0.02, 0.06), total_temperature_deviation=(-15.0, 45.0))
+    entry = method.model_copy(update={"interval": wide})
+    axes = _axes()
+    draw_deviations(axes, home.model_copy(update={"methods": {"GAIL": entry}}))
+    assert [tuple(line.get_xdata()) for line in axes.get_lines() if len(line.get_xdata()) == 2] == [
+        (0.0, 0.06)
+    ]
+    point = DemonstrationRuns(days=7, method="GAIL", **entry.model_dump())
+    axes = _axes()
+    draw_deviation_by_length(axes, home.model_copy(update={"data_efficiency": (point,)}))
+    (whisker,) = [lines for lines in axes.collections if isinstance(lines, LineCollection)]
+    assert [y for _, y in whisker.get_segments()[0]] == [0.0, 45.0]
+
+
 def test_temperatures_stand_at_the_end_of_their_slots(home, series):
     axes = _axes()
     draw_indoor_temperature(axes, home, series.week)
@@ -163,12 +191,22 @@ def test_the_run_of_median_cost_is_shown(home):
 
 
 def test_no_two_methods_look_the_same():
-    looks = [look_of(name) for group in GROUPS for name in group.methods if name != "AIRL"]
+    looks = [look_of(method.name) for method in METHODS]
     assert len({(look.colour, look.line) for look in looks}) == len(looks)
 
 
-def test_a_stranger_looks_the_same_every_time():
-    assert look_of("my own") == look_of("my own")
+def test_a_stranger_looks_the_same_in_every_process():
+    code = "from hemma.report.methods import look_of; print([look_of(f'my own {i}') for i in range(9)])"
+    here = [look_of(f"my own {number}") for number in range(9)]
+    other = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONHASHSEED": "7"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert other.stdout.strip() == str(here)
+    assert len(set(here)) > 1
 
 
 @pytest.mark.parametrize("rows", [1, 149, 150, 151, 1800])
@@ -192,3 +230,55 @@ def test_several_homes_have_figures_each_under_its_own_safe_name(tmp_path):
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     assert {"results.png", "a_b-1-results.png", "a_b-2-results.png", "a_b-2-energy-cost.svg"} <= names
     assert page.index("The homes at a glance") < page.index("Results on a b") < page.index("Results on a_b")
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_figures_of_an_earlier_larger_run_are_removed_and_nothing_else(small):
+    folder, content = small
+    write_report(folder)
+    figures = folder / "figures"
+    outside = folder / "outside.svg"
+    strangers = (figures / "robustness.svg", figures / "mine.png", outside)
+    for path in strangers:
+        path.write_text("not of the report")
+    with (figures / LIST_FILE).open("a") as file:
+        file.write("../outside.svg\nnotes.txt\n")
+    assert (figures / "regret.svg").is_file()
+    del content["homes"]["home"]["regret"]
+    save_results(folder, content)
+    write_report(folder)
+    assert not (figures / "regret.svg").exists()
+    assert not (figures / "regret.png").exists()
+    assert all(path.read_text() == "not of the report" for path in strangers)
+    assert (figures / "energy-cost.svg").is_file()
+    assert "regret.svg" not in (figures / LIST_FILE).read_text()
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_made_up_figure_is_one_module_and_one_line(small, monkeypatch):
+    def draw(home: HomeResults) -> Figure:
+        return single(2.0, 1.0, lambda axes: axes.set_title(home.currency))
+
+    made_up = HomeFigure[HomeResults](
+        name="made-up",
+        section=Section("A section of its own"),
+        needs=lambda subject: subject.home if "Rule" in subject.home.methods else None,
+        draw=draw,
+        words=lambda home: Words("Made up", f"Nothing of {len(home.methods)} methods.", "Seen, and said."),
+        missing="Nothing is made up here.",
+    )
+    monkeypatch.setattr("hemma.report.figures.FIGURES", (*FIGURES, made_up))
+    folder, content = small
+    page = write_report(folder).read_text(encoding="utf-8")
+    assert (folder / "figures/made-up.svg").is_file()
+    assert (folder / "figures/made-up.png").is_file()
+    for told in (
+        "<h3>A section of its own</h3>",
+        "Nothing of 3 methods.",
+        "Made up.</strong> Seen, and said.",
+    ):
+        assert told in page
+    del content["homes"]["home"]["methods"]["Rule"]
+    save_results(folder, content)
+    assert "Nothing is made up here." in write_report(folder).read_text(encoding="utf-8")
+    assert not (folder / "figures/made-up.svg").exists()

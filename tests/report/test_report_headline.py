@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from synthetic_results import save_results
 
-from hemma.report.headline import Headline, headline
+from hemma.report.page.headline import Headline, headline
 from hemma.results.results import load_results
 
 

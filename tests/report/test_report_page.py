@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 from synthetic_results import save_results, write_results
 
-from hemma.report import results_table, write_report
+from hemma.report import TABLE_HEADINGS, results_table, write_report
 
 EVIL = '"><img src=x onerror=alert(1)><script>alert(2)</script>'
 
@@ -54,6 +54,13 @@ def test_every_cell_of_the_table_stands_in_the_page(written, page):
         for cell in row.measures:
             assert cell.value in page.texts
             assert not cell.detail or cell.detail in page.texts
+
+
+def test_every_cell_knows_its_column_for_screens_that_have_no_room_for_columns(written, page):
+    labels = [cell["data-label"] for cell in page.all("td")]
+    assert labels[: len(TABLE_HEADINGS) - 1] == list(TABLE_HEADINGS[1:])
+    assert all(labels)
+    assert "content: attr(data-label)" in written.html
 
 
 def test_nothing_is_loaded_from_anywhere(written, page):
@@ -115,6 +122,38 @@ def test_the_headline_is_computed(written, page):
     assert "Rule costs $44.60; perfect information would cost $28.40." in page.text
     assert f"HA-1 costs {100 * (44.6 - cost) / 44.6:.1f}\u00a0% less than Rule" in page.text
     assert f"keeps {100 * share:.1f}\u00a0% of the possible savings" in page.text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_what_no_controller_can_keep_comfortable_is_not_compared_at_equal_comfort(small, page):
+    assert "At equal comfort HA-1 keeps" in page.text
+    assert "out of reach" not in page.text
+    folder, content = small
+    home = content["homes"]["home"]
+    home["optimum"]["mean_temperature_deviation"] = 0.51
+    home["recommendation"] = {
+        "method": "Rule", "days": 9, "judged": [{"method": "Rule", "daily_cost": 2.0, "excess": 0.0}],
+    }  # fmt: skip
+    save_results(folder, content)
+    said = _Page(write_report(folder).read_text(encoding="utf-8"))
+    images = " ".join(str(image["alt"]) for image in said.all("img"))
+    start = said.text.index("How to read it")
+    assert "equal comfort" not in (said.text[:start] + images).lower()
+    assert "At the same deviation from comfort HA-1 keeps" in said.text
+    assert "outside the band by 0.5100\u00a0°C on average" in said.text
+
+
+@pytest.mark.usefixtures("undrawn")
+@pytest.mark.parametrize(("gap", "is_proven"), [(9e-7, True), (1.1e-6, False), (None, True)])
+def test_an_optimum_whose_bound_is_open_is_said_to_be_unproven(small, gap, is_proven):
+    folder, content = small
+    content["homes"]["home"]["optimum"]["relative_gap"] = gap
+    save_results(folder, content)
+    (row,) = [row for row in results_table(folder) if row.method == "optimum"]
+    assert (row.under("Gap to optimum").detail == "not proven") is not is_proven
+    said = _Page(write_report(folder).read_text(encoding="utf-8")).text
+    assert ("would cost $28.40 (not proven)." in said) is not is_proven
+    assert ("It is not proven" in said) is not is_proven
 
 
 def test_order_of_the_sections(page):

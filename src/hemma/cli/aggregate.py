@@ -12,15 +12,14 @@ if TYPE_CHECKING:
 
 def print_aggregate(console: "Console", results: "Results") -> None:
     """A row a method: the mean over homes and seeds; nothing for a single home."""
-    from hemma.report.aggregate_table import AGGREGATE_HEADINGS, aggregate_table
+    from hemma.report.methods import in_order
+    from hemma.report.tables.aggregate import AGGREGATE_HEADINGS, INTERVALS, aggregate_rows
 
-    rows = aggregate_table(results)
+    rows = aggregate_rows(results)
     if not rows or results.aggregate is None:
         return
-    title = (
-        f"All {len(results.aggregate.homes)} homes: mean, 95 % interval for other seeds and for other homes"
-    )
-    table = ruled(title, AGGREGATE_HEADINGS)
-    for row in rows:
-        table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in row.cells))
+    table = ruled(f"All {len(results.aggregate.homes)} homes: means over homes and seeds", AGGREGATE_HEADINGS)
+    table.caption = INTERVALS
+    for method in in_order(rows):
+        table.add_row(method, *(f"{cell.value}\n{cell.detail}".strip() for cell in rows[method]))
     console.print(table)

@@ -11,7 +11,7 @@ from hemma.cli.files import Force, named, require_new
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from hemma.report.comparison import Comparison
+    from hemma.report.comparison.records import FolderComparison
 
 Folders = Annotated[
     list[Path],
@@ -35,8 +35,8 @@ def register(app: typer.Typer) -> None:
 
 def compare(folders: Folders, out: File = None, force: Force = False, json: Json = False) -> None:
     """Set results folders side by side: costs, shares, comfort, and what differs in settings and data."""
-    from hemma.report.compare import compare as compare_folders
-    from hemma.report.comparison_files import FORMS, comparison_document, write_comparison
+    from hemma.report.comparison.compare import compare as compare_folders
+    from hemma.report.comparison.files import FORMS, comparison_document, write_comparison
 
     if out is not None:
         require_new(out, force, tuple(FORMS))
@@ -51,8 +51,8 @@ def compare(folders: Folders, out: File = None, force: Force = False, json: Json
         (tell if json else say)(f"Comparison: {out}")
 
 
-def _print_comparison(comparison: "Comparison") -> None:
-    from hemma.report.comparison_table import READING, legend
+def _print_comparison(comparison: "FolderComparison") -> None:
+    from hemma.report.comparison.table import READING, legend
 
     console = results_console()
     for line in legend(comparison):
@@ -65,8 +65,8 @@ def _print_comparison(comparison: "Comparison") -> None:
     console.print(READING)
 
 
-def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
-    from hemma.report.comparison_table import disagreement_rows, letter
+def _print_disagreements(console: "Console", comparison: "FolderComparison") -> None:
+    from hemma.report.comparison.table import disagreement_rows, letter
 
     rows = disagreement_rows(comparison)
     if not rows:
@@ -79,8 +79,8 @@ def _print_disagreements(console: "Console", comparison: "Comparison") -> None:
     console.print(table)
 
 
-def _print_methods(console: "Console", comparison: "Comparison") -> None:
-    from hemma.report.comparison_table import METHOD_HEADINGS, home_rows
+def _print_methods(console: "Console", comparison: "FolderComparison") -> None:
+    from hemma.report.comparison.table import METHOD_HEADINGS, home_rows
 
     for home in comparison.homes:
         _print_rows(console, home.home, METHOD_HEADINGS, list(home_rows(home)))
@@ -88,12 +88,11 @@ def _print_methods(console: "Console", comparison: "Comparison") -> None:
             console.print(f"Note: {note}")
 
 
-def _print_over_homes(console: "Console", comparison: "Comparison") -> None:
-    from hemma.report.comparison_table import OVER_HOMES_HEADINGS, over_homes_rows
+def _print_over_homes(console: "Console", comparison: "FolderComparison") -> None:
+    from hemma.report.comparison.table import OVER_HOMES, OVER_HOMES_HEADINGS, over_homes_rows
 
     if comparison.over_homes:
-        title = "Mean over the homes that both folders share; the interval is about other homes"
-        _print_rows(console, title, OVER_HOMES_HEADINGS, list(over_homes_rows(comparison)))
+        _print_rows(console, OVER_HOMES, OVER_HOMES_HEADINGS, list(over_homes_rows(comparison)))
 
 
 def _print_rows(console: "Console", title: str, headings: tuple[str, ...], rows: list) -> None:

@@ -22,7 +22,7 @@ SILENCE = 10.0
 """Seconds between two lines of a stage where there is no terminal."""
 WIDTH = 120
 """Characters of a line that does not go to a terminal."""
-COLUMNS = ("Runs", "Energy cost", "Mean deviation", "Gap to optimum", "Share of savings", "Training")
+COLUMNS = ("Seeds", "Energy cost", "Mean deviation", "Gap to optimum", "Share of savings", "Training time")
 
 
 def say(line: object) -> None:
@@ -132,7 +132,7 @@ def show_results(folder: Path, content: Any) -> None:
 
 def print_recommendations(content: Any) -> None:
     """Which controller each home should have, where that was judged."""
-    from hemma.report.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
+    from hemma.report.tables.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
     from hemma.results.results import HomeResults
 
     console = results_console()
@@ -160,14 +160,7 @@ def print_table(folder: Path) -> None:
         table = ruled(f"{home}: mean of the runs, and its 95 % interval", ("Method", *COLUMNS))
         for row in rows:
             if row.home == home:
-                cells = (
-                    row.seeds,
-                    row.energy_cost,
-                    row.mean_temperature_deviation,
-                    row.gap_to_optimum,
-                    row.share_of_savings,
-                    row.seconds_to_train,
-                )
+                cells = [row.under(heading) for heading in COLUMNS]
                 table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in cells))
         console.print(table)
     print_aggregate(console, results)

@@ -102,7 +102,7 @@ def _print_table(folder: Path, every: bool) -> None:
 
     found = load_robustness(folder)
     methods = [name for name in shown(found) if every or name in PRINTED]
-    table = ruled("Share of savings at equal comfort, mean deviation in °C", ("Fault", *methods))
+    table = ruled("Share of savings at the same deviation, mean deviation in °C", ("Fault", *methods))
     table.pad_edge, table.columns[0].min_width = False, len("controllers")
     for fault in found.faults:
         cells = [met(found, fault, name) for name in methods]

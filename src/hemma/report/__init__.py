@@ -1,6 +1,7 @@
 """Figures and the HTML report, from a results folder alone."""
 
 from hemma.report.report import write_report
-from hemma.report.table import TABLE_HEADINGS, Cell, TableRow, results_table
+from hemma.report.tables.cells import Cell
+from hemma.report.tables.results import TABLE_HEADINGS, TableRow, results_table
 
 __all__ = ["TABLE_HEADINGS", "Cell", "TableRow", "results_table", "write_report"]

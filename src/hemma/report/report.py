@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from hemma.checkpoint import write_atomically
-from hemma.report.figures import draw_all
-from hemma.report.page import report_page
+from hemma.report.page.page import report_page
+from hemma.report.pictures import draw_all
 from hemma.results.results import load_results
 
 

@@ -12,13 +12,17 @@ from hemma.errors import HemmaError
 
 
 @dataclass(frozen=True)
-class Clock:
+class LocalTime:
     """Local time at a fixed offset from UTC, that of the first time stamp: it never jumps back."""
 
     start: Shaped[np.ndarray, "slots"]
     """Start of each slot, datetime64 in local time."""
     offset: str
     """Such as ``UTC-06:00``."""
+
+    def part(self, slots: slice) -> "LocalTime":
+        """The time of some slots."""
+        return LocalTime(self.start[slots], self.offset)
 
     def fence_posts(self, slots: int) -> Shaped[np.ndarray, "posts"]:
         """The first ``slots`` starts and the end of the last of them."""
@@ -32,13 +36,19 @@ class Clock:
 class ExogenousSeries:
     """What the home did not decide in the test period."""
 
-    clock: Clock
+    clock: LocalTime
     pv_generation: Float[np.ndarray, "slots"]
     """[kW]."""
     load: Float[np.ndarray, "slots"]
     """[kW]."""
     buying_price: Float[np.ndarray, "slots"]
     """[currency/kWh]."""
+
+    def part(self, slots: slice) -> "ExogenousSeries":
+        """The series of some slots."""
+        return ExogenousSeries(
+            self.clock.part(slots), self.pv_generation[slots], self.load[slots], self.buying_price[slots]
+        )
 
 
 @dataclass(frozen=True)
@@ -52,12 +62,18 @@ class ScheduleSeries:
     grid_power: Float[np.ndarray, "slots"]
     """[kW], buying positive."""
 
+    def part(self, slots: slice) -> "ScheduleSeries":
+        """The series of some slots."""
+        return ScheduleSeries(
+            self.battery_energy[slots], self.indoor_temperature[slots], self.grid_power[slots]
+        )
+
 
 @dataclass(frozen=True)
 class FreeRun:
     """The network predicting on its own, beside what was measured, at the start of each slot."""
 
-    clock: Clock
+    clock: LocalTime
     measured: Float[np.ndarray, "slots"]
     """[degC]."""
     predicted: Float[np.ndarray, "slots"]
@@ -98,97 +114,80 @@ class SeriesReader:
 
     def exogenous(self, home: str, slots: int) -> ExogenousSeries:
         """The exogenous series of a home's test period of ``slots`` slots."""
-        path = self.located(f"schedules/{home}/exogenous.csv")
-        table = _table(path, ("time", "pv_kw", "load_kw", "buy_per_kwh"))
-        _require_rows(path, table, slots)
-        return ExogenousSeries(
-            clock=_clock(path, table),
-            pv_generation=_numbers(path, table, "pv_kw"),
-            load=_numbers(path, table, "load_kw"),
-            buying_price=_numbers(path, table, "buy_per_kwh"),
-        )
+        table = self._table(f"schedules/{home}/exogenous.csv", "time", "pv_kw", "load_kw", "buy_per_kwh")
+        pv, load, price = table.of_slots(slots, "pv_kw", "load_kw", "buy_per_kwh")
+        return ExogenousSeries(table.clock(), pv, load, price)
 
     def schedule(self, name: str, slots: int) -> ScheduleSeries:
         """A schedule of ``slots`` slots."""
-        path = self.located(name)
-        table = _table(path, ("time", "battery_kwh", "indoor_c", "grid_kw"))
-        _require_rows(path, table, slots)
-        return ScheduleSeries(
-            battery_energy=_numbers(path, table, "battery_kwh"),
-            indoor_temperature=_numbers(path, table, "indoor_c"),
-            grid_power=_numbers(path, table, "grid_kw"),
-        )
+        table = self._table(name, "time", "battery_kwh", "indoor_c", "grid_kw")
+        energy, temperature, grid = table.of_slots(slots, "battery_kwh", "indoor_c", "grid_kw")
+        return ScheduleSeries(energy, temperature, grid)
 
     def free_run(self, name: str) -> FreeRun:
         """A free run of the identified network."""
-        path = self.located(name)
-        table = _table(path, ("time", "measured_c", "predicted_c"))
-        return FreeRun(
-            clock=_clock(path, table),
-            measured=_numbers(path, table, "measured_c"),
-            predicted=_numbers(path, table, "predicted_c"),
-        )
+        table = self._table(name, "time", "measured_c", "predicted_c")
+        return FreeRun(table.clock(), table.numbers("measured_c"), table.numbers("predicted_c"))
 
     def curve(self, name: str) -> TrainingCurve:
         """The training curve of one run."""
-        path = self.located(name)
-        table = _table(path, ("iteration",))
-        if table.empty:
+        table = self._table(name, "iteration")
+        if table.content.empty:
             raise HemmaError(
-                f"{path}: expected a row a chunk of iterations, found none. Run the training again"
+                f"{table.path}: expected a row a chunk of iterations, found none. Run the training again"
             )
-        return TrainingCurve(
-            iteration=_numbers(path, table, "iteration"),
-            quantities={
-                str(column): _numbers(path, table, str(column))
-                for column in table.columns
-                if column != "iteration"
-            },
-        )
+        others = [str(column) for column in table.content.columns if column != "iteration"]
+        quantities = {column: table.numbers(column) for column in others}
+        return TrainingCurve(table.numbers("iteration"), quantities)
+
+    def _table(self, name: str, *columns: str) -> "_Table":
+        path = self.located(name)
+        try:
+            content = pd.read_csv(path)
+        except (OSError, ValueError) as error:
+            raise HemmaError(f"{path}: expected a CSV file with {','.join(columns)}: {error}") from error
+        missing = [column for column in columns if column not in content.columns]
+        if missing:
+            found = ",".join(str(column) for column in content.columns)
+            raise HemmaError(
+                f"{path}: expected the columns {','.join(columns)}, {','.join(missing)} is missing from "
+                f"{found}. Run `hemma reproduce` again"
+            )
+        return _Table(path, content)
 
 
-def _table(path: Path, columns: tuple[str, ...]) -> pd.DataFrame:
-    try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError) as error:
-        raise HemmaError(f"{path}: expected a CSV file with {','.join(columns)}: {error}") from error
-    missing = [column for column in columns if column not in table.columns]
-    if missing:
-        found = ",".join(str(column) for column in table.columns)
-        raise HemmaError(
-            f"{path}: expected the columns {','.join(columns)}, {','.join(missing)} is missing from {found}. "
-            "Run `hemma reproduce` again"
-        )
-    return table
+@dataclass(frozen=True)
+class _Table:
+    path: Path
+    content: pd.DataFrame
 
+    def numbers(self, column: str) -> np.ndarray:
+        try:
+            return self.content[column].to_numpy(float)
+        except ValueError as error:
+            raise HemmaError(f"{self.path}: expected numbers in the column {column}: {error}") from error
 
-def _require_rows(path: Path, table: pd.DataFrame, slots: int) -> None:
-    if len(table) != slots:
-        raise HemmaError(
-            f"{path}: expected {slots} rows, one a slot of the test period, found {len(table)}. "
-            "The folder mixes two experiments: run `hemma reproduce` again"
-        )
+    def of_slots(self, slots: int, *columns: str) -> list[np.ndarray]:
+        if len(self.content) != slots:
+            raise HemmaError(
+                f"{self.path}: expected {slots} rows, one a slot of the test period, found "
+                f"{len(self.content)}. The folder mixes two experiments: run `hemma reproduce` again"
+            )
+        return [self.numbers(column) for column in columns]
 
-
-def _numbers(path: Path, table: pd.DataFrame, column: str) -> np.ndarray:
-    try:
-        return table[column].to_numpy(float)
-    except ValueError as error:
-        raise HemmaError(f"{path}: expected numbers in the column {column}: {error}") from error
-
-
-def _clock(path: Path, table: pd.DataFrame) -> Clock:
-    try:
-        moments = pd.to_datetime(table["time"], format="ISO8601", utc=True)
-        offset = datetime.fromisoformat(str(table["time"].iloc[0])).utcoffset()
-    except (ValueError, IndexError) as error:
-        raise HemmaError(f"{path}: expected ISO 8601 time stamps in the column time: {error}") from error
-    if offset is None:
-        raise HemmaError(
-            f"{path}: expected time stamps with an offset such as 2021-08-01T00:00:00-06:00, "
-            f"found {table['time'].iloc[0]}"
-        )
-    minutes = round(offset.total_seconds() / 60)
-    sign = "−" if minutes < 0 else "+"
-    name = f"UTC{sign}{abs(minutes) // 60:02d}:{abs(minutes) % 60:02d}"
-    return Clock((moments + offset).dt.tz_localize(None).to_numpy(), name)
+    def clock(self) -> LocalTime:
+        path, column = self.path, self.content["time"]
+        try:
+            moments = pd.to_datetime(column, format="ISO8601", utc=True)
+            offset = datetime.fromisoformat(str(column.iloc[0])).utcoffset()
+        except (ValueError, IndexError) as error:
+            raise HemmaError(f"{path}: expected ISO 8601 time stamps in the column time: {error}") from error
+        if offset is None:
+            raise HemmaError(
+                f"{path}: expected time stamps with an offset such as 2021-08-01T00:00:00-06:00, "
+                f"found {column.iloc[0]}"
+            )
+        minutes = round(offset.total_seconds() / 60)
+        sign = "−" if minutes < 0 else "+"
+        name = f"UTC{sign}{abs(minutes) // 60:02d}:{abs(minutes) % 60:02d}"
+        return LocalTime((moments + offset).dt.tz_localize(None).to_numpy(), name)

@@ -1,6 +1,6 @@
 """One week of the test period: the exogenous series and what every method did in it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Shaped
@@ -8,7 +8,7 @@ from jaxtyping import Shaped
 from hemma.errors import HemmaError
 from hemma.report.methods import in_order, shown_over_time
 from hemma.report.numbers import plain
-from hemma.report.series import Clock, ExogenousSeries, ScheduleSeries, SeriesReader
+from hemma.report.series import ExogenousSeries, ScheduleSeries, SeriesReader
 from hemma.results.results import HomeResults
 
 WEEK_DAYS = 7
@@ -68,36 +68,18 @@ def read_week(reader: SeriesReader, name: str, home: HomeResults, number: int = 
     slots = min(home.test.slots - first, _slots_a_week(home))
     part = slice(first, first + slots)
     exogenous = reader.exogenous(name, home.test.slots)
-    clock = replace(exogenous.clock, start=exogenous.clock.start[first:])
     runs = {method: home.methods[method].typical_run for method in in_order(home.methods)}
     return Week(
         number=number,
-        exogenous=_exogenous_part(exogenous, clock, part),
+        exogenous=exogenous.part(part),
         schedules={
-            method: _schedule_part(reader.schedule(run.schedule, home.test.slots), part)
+            method: reader.schedule(run.schedule, home.test.slots).part(part)
             for method, run in runs.items()
             if run.schedule is not None
         },
-        posts=clock.fence_posts(slots),
+        posts=exogenous.clock.part(slice(first, None)).fence_posts(slots),
     )
 
 
 def _slots_a_week(home: HomeResults) -> int:
     return round(WEEK_DAYS * 24 / home.slot_length_h)
-
-
-def _exogenous_part(whole: ExogenousSeries, clock: Clock, part: slice) -> ExogenousSeries:
-    return ExogenousSeries(
-        clock=clock,
-        pv_generation=whole.pv_generation[part],
-        load=whole.load[part],
-        buying_price=whole.buying_price[part],
-    )
-
-
-def _schedule_part(whole: ScheduleSeries, part: slice) -> ScheduleSeries:
-    return ScheduleSeries(
-        battery_energy=whole.battery_energy[part],
-        indoor_temperature=whole.indoor_temperature[part],
-        grid_power=whole.grid_power[part],
-    )

@@ -5,7 +5,7 @@ from jaxtyping import Float
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from hemma.report.canvas import INK, new_figure
+from hemma.report.drawing.canvas import INK, new_figure
 from hemma.report.numbers import DASH, decimals
 
 LOWEST = 0.0
@@ -37,5 +37,5 @@ def robustness_figure(
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)
-    axes.set_xlabel("Share of savings at equal comfort (%); 100 is perfect information in the same home")
+    axes.set_xlabel("Share of savings at the same deviation (%); 100 is perfect information in the same home")
     return figure

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from hemma.checkpoint import write_atomically
-from hemma.report.canvas import drawing_style, save
+from hemma.report.drawing.canvas import drawing_style, save
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, decimals, fine, percent
 from hemma.studies.robustness.figure import robustness_figure
@@ -79,8 +79,8 @@ def robustness_markdown(found: Robustness) -> str:
 
 
 LEGEND = (
-    "Mean share of savings at equal comfort in the home as it is under the fault (worst run), mean deviation "
-    "in °C, slots in which the safety layer intervened."
+    "Mean share of savings at the same deviation in the home as it is under the fault (worst run), mean "
+    "deviation in °C, slots in which the safety layer intervened."
 )
 
 

@@ -5,7 +5,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
 from hemma.methods.looks import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
-from hemma.report.canvas import FAINT, GRID, INK, new_figure
+from hemma.report.drawing.canvas import FAINT, GRID, INK, new_figure
+from hemma.report.drawing.rows import above_zero
 from hemma.report.numbers import percent
 from hemma.results.records import MethodRuns
 from hemma.studies.transfer.records import Transfer
@@ -50,7 +51,7 @@ def transfer_figure(transfer: Transfer) -> Figure:
     left.axvline(0.0, color=FAINT, lw=0.9)
     left.set_xlim(LOWEST, 1.04)
     left.xaxis.set_major_formatter(PercentFormatter(1.0, symbol="\u00a0%"))
-    left.set_xlabel("Share of savings at equal comfort")
+    left.set_xlabel("Share of savings at the same deviation")
     right.set_xlim(left=0.0)
     right.set_xlabel("Mean deviation from comfort (°C)")
     for number, name in enumerate(transfer.methods):
@@ -71,7 +72,7 @@ def _draw(left: Axes, right: Axes, place: float, method: MethodRuns, look: Look)
     elif share is not None:
         _mark(left, place, share, method.interval.share_of_savings, look)
     if deviation is not None:
-        _mark(right, place, deviation, method.interval.mean_temperature_deviation, look)
+        _mark(right, place, deviation, above_zero(method.interval.mean_temperature_deviation), look)
 
 
 def _mark(axes: Axes, place: float, mean: float, interval: tuple[float, float] | None, look: Look) -> None:

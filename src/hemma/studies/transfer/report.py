@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from hemma.checkpoint import write_atomically
-from hemma.report.canvas import drawing_style, save
+from hemma.report.drawing.canvas import drawing_style, save
 from hemma.report.numbers import degrees, fine, hundredths, percent
 from hemma.studies.transfer.figure import transfer_figure
 from hemma.studies.transfer.records import ChangedHome, Transfer, load_transfer

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from hemma.evaluation.reward_maps import FRACTIONS, Answers, Grid, preferred
 from hemma.methods.looks import BLUE, ORANGE
-from hemma.report.canvas import GRID, INK, new_figure
+from hemma.report.drawing.canvas import GRID, INK, new_figure
 from hemma.report.numbers import plain
 
 DISCHARGE_TO_CHARGE = LinearSegmentedColormap.from_list(

@@ -1,0 +1,127 @@
+"""A comparison of results folders as text: the same rows on the screen and in the page."""
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from hemma.evaluation import Improvement, Metrics
+from hemma.report.comparison.records import ComparedHome, FolderComparison, MeasuredMethod, OverHomes
+from hemma.report.numbers import DASH, hundredths
+from hemma.report.tables.cells import CHANCE, DEGREES, NOTHING, PERCENT, Bounds, Cell, Notation, in_money
+
+METHOD_HEADINGS = (
+    "Method",
+    "Folder",
+    "Runs",
+    "Energy cost",
+    "Share of savings",
+    "Gap to optimum",
+    "Mean deviation",
+    "Better than A",
+)
+OVER_HOMES_HEADINGS = ("Method", "Folder", "Homes", "Share of savings, difference to A", "Better than A")
+READING = (
+    "A is the folder that the others are compared with: in parentheses stands the difference to it, in "
+    "brackets the 95 % interval of the mean. Better than A: how probably a run of this folder has a lower "
+    "regret (cost above perfect information with the same deviation) than a run of A; 0.5 is no difference."
+)
+OVER_HOMES = (
+    "Mean over the homes that both folders share; the interval is from home to home: it leaves out what the "
+    "homes share, such as weather, prices and building"
+)
+DISAGREEMENT_WIDTH = 60
+"""Characters of a value that is shown; longer ones are cut."""
+
+
+@dataclass(frozen=True)
+class ComparisonRow:
+    """One method, in one folder."""
+
+    method: str
+    folder: str
+    """Its letter."""
+    cells: tuple[Cell, ...]
+    """What stands below the headings from the third on."""
+
+
+def letter(place: int) -> str:
+    """``A`` for the first folder, which the others are compared with."""
+    return chr(ord("A") + place) if place < 26 else str(place + 1)
+
+
+def legend(comparison: FolderComparison) -> list[str]:
+    """Which letter stands for which folder."""
+    return [f"{letter(place)}  {name}" for place, name in enumerate(comparison.folders)]
+
+
+def disagreement_rows(comparison: FolderComparison) -> list[tuple[str, ...]]:
+    """What differs, and its value in each folder."""
+    return [(row.key, *(_short(value) for value in row.values)) for row in comparison.disagreements]
+
+
+def home_rows(home: ComparedHome) -> Iterator[ComparisonRow]:
+    """A row for each method in each folder that has it."""
+    for compared in home.methods:
+        for place, found in enumerate(compared.found):
+            if found is not None:
+                yield ComparisonRow(
+                    compared.method, letter(place), _cells(found, home.currencies[place] or "")
+                )
+
+
+def over_homes_rows(comparison: FolderComparison) -> Iterator[ComparisonRow]:
+    """A row for each method in each folder but the first."""
+    for found in comparison.over_homes:
+        yield ComparisonRow(
+            found.method, letter(comparison.folders.index(found.folder)), _over_homes_cells(found)
+        )
+
+
+def _short(value: Any) -> str:
+    text = DASH if value is None else value if isinstance(value, str) else json.dumps(value)
+    return text if len(text) <= DISAGREEMENT_WIDTH else f"{text[: DISAGREEMENT_WIDTH - 1]}…"
+
+
+def _cells(found: MeasuredMethod, currency: str) -> tuple[Cell, ...]:
+    mean, interval, less = found.mean, found.interval, found.difference or Metrics()
+    return (
+        Cell(str(found.runs)),
+        _cell(in_money(currency), mean.energy_cost, less.energy_cost, interval.energy_cost),
+        _cell(PERCENT, mean.share_of_savings, less.share_of_savings, interval.share_of_savings),
+        _cell(PERCENT, mean.gap_to_optimum, less.gap_to_optimum, interval.gap_to_optimum),
+        _cell(
+            DEGREES,
+            mean.mean_temperature_deviation,
+            less.mean_temperature_deviation,
+            interval.mean_temperature_deviation,
+        ),
+        _improvement_cell(found.improvement),
+    )
+
+
+def _over_homes_cells(found: OverHomes) -> tuple[Cell, ...]:
+    summary = found.share_of_savings
+    difference = Cell(_signed(summary.mean, hundredths) or DASH, PERCENT.range(summary.interval))
+    return Cell(str(len(found.homes))), difference, _improvement_cell(found.improvement)
+
+
+def _improvement_cell(improvement: Improvement | None) -> Cell:
+    if improvement is None or improvement.probability is None:
+        return NOTHING
+    return CHANCE.cell(improvement.probability, improvement.interval)
+
+
+def _cell(notation: Notation, mean: float | None, less: float | None, bounds: Bounds) -> Cell:
+    """The mean, the difference to the first folder if there is one, and the interval."""
+    difference = _signed(less, notation.bare)
+    value = notation.full(mean)
+    return Cell(f"{value} ({difference})" if difference else value, notation.range(bounds))
+
+
+def _signed(value: float | None, written: Callable[[float | None], str]) -> str:
+    """``+0.40``, or nothing where there is no difference to speak of."""
+    if value is None:
+        return ""
+    text = written(value)
+    return f"+{text}" if value > 0 else text

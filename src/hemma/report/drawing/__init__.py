@@ -1,0 +1,1 @@
+"""What all figures share: canvas, rows of methods, names beside points."""

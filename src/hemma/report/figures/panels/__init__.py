@@ -1,0 +1,1 @@
+"""The six panels of the results, apart and together."""

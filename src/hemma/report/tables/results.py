@@ -1,0 +1,94 @@
+"""The table of results as text: the same rows on the screen and in the report."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from hemma.report.methods import in_order
+from hemma.report.numbers import DASH, money, percent, seconds
+from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell, in_money
+from hemma.results.records import MethodRuns
+from hemma.results.results import HomeResults, Results, load_results
+
+TABLE_HEADINGS = (
+    "Method",
+    "Seeds",
+    "Energy cost",
+    "Trading X1",
+    "Battery X2",
+    "Mean deviation",
+    "Gap to optimum",
+    "Share of savings",
+    "Interquartile mean",
+    "Worst seed",
+    "Training time",
+)
+PROVEN = 1e-6
+"""A relative gap between cost and lower bound up to this is a proof."""
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """One method on one home."""
+
+    home: str
+    method: str
+    measures: tuple[Cell, ...]
+    """What stands below ``TABLE_HEADINGS`` from the second on."""
+
+    def under(self, heading: str) -> Cell:
+        """The cell below that one of ``TABLE_HEADINGS``, which is not the first."""
+        return self.measures[TABLE_HEADINGS.index(heading) - 1]
+
+
+def results_table(source: Path | Results) -> list[TableRow]:
+    """The rows of all homes, home by home and the methods in their usual order.
+
+    ``source`` is a results folder or what ``load_results`` read from one. Raises ``HemmaError`` where the
+    folder has no readable ``results.json``.
+    """
+    results = source if isinstance(source, Results) else load_results(source)
+    return [
+        TableRow(name, method, _measures(home, method))
+        for name, home in results.finished.items()
+        for method in in_order(home.methods)
+    ]
+
+
+def is_proven(home: HomeResults) -> bool:
+    """Whether no controller can cost less than the optimum that was found; so too where no bound is known."""
+    gap = home.optimum.relative_gap if home.optimum else None
+    return gap is None or gap <= PROVEN
+
+
+def _measures(home: HomeResults, name: str) -> tuple[Cell, ...]:
+    method, currency = home.methods[name], home.currency
+    mean, interval, money_of = method.mean, method.interval, in_money(currency)
+    gap = PERCENT.cell(mean.gap_to_optimum, interval.gap_to_optimum)
+    return (
+        Cell(str(len(method.runs)) if method.is_learned else DASH),
+        money_of.cell(mean.energy_cost, interval.energy_cost),
+        money_of.cell(mean.transaction_cost, interval.transaction_cost),
+        money_of.cell(mean.battery_cost, interval.battery_cost),
+        DEGREES.cell(mean.mean_temperature_deviation, interval.mean_temperature_deviation),
+        gap if name != "optimum" or is_proven(home) else Cell(gap.value, "not proven"),
+        PERCENT.cell(mean.share_of_savings, interval.share_of_savings),
+        _interquartile_cell(method, currency),
+        _worst_cell(method, currency),
+        Cell(seconds(mean.seconds_to_train)),
+    )
+
+
+def _interquartile_cell(method: MethodRuns, currency: str) -> Cell:
+    middle = method.interquartile_mean
+    if len(method.runs) < 2:
+        return NOTHING
+    share = "" if middle.share_of_savings is None else f"(share {percent(middle.share_of_savings)})"
+    return Cell(money(middle.energy_cost, currency), share)
+
+
+def _worst_cell(method: MethodRuns, currency: str) -> Cell:
+    worst = method.worst_run
+    if worst is None:
+        return NOTHING
+    gap = "" if worst.gap_to_optimum is None else f"(gap {percent(worst.gap_to_optimum)})"
+    return Cell(money(worst.energy_cost, currency), gap)
