@@ -231,5 +231,5 @@ def test_the_page_stands_alone(two, tmp_path):
 
 def test_another_ending_is_refused(two, tmp_path):
     before, after, _ = two
-    with pytest.raises(HemmaError, match=r"c\.pdf: expected a name that ends in \.html, \.csv, \.json"):
+    with pytest.raises(HemmaError, match=r"c\.pdf: expected a file name that ends in \.html, \.csv, \.json"):
         write_comparison(tmp_path / "c.pdf", compare([before, after]))
