@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from hemma.errors import HemmaError
 from hemma.settings.experiment import Experiment
-from hemma.settings.keys import explanations, inside, key_of, outside, section, shown
+from hemma.settings.keys import explanations, in_keys_of_today, inside, key_of, outside, section, shown
 from hemma.settings.yaml_file import place_in, read_yaml
 
 
@@ -26,6 +26,7 @@ def read_settings(path: Path) -> Experiment:
 
 def experiment_of(given: Any, path: Path) -> Experiment:
     """The experiment that keys and values, found in the file ``path``, describe; see ``read_settings``."""
+    given = in_keys_of_today(Experiment, given)
     content = _merged(outside(Experiment()), {} if given is None else given)
     try:
         return inside(Experiment, section(Experiment).model_validate(content), given)

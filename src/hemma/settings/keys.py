@@ -5,6 +5,7 @@ import inspect
 import re
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import fields, is_dataclass
 from functools import cache
 from itertools import pairwise
@@ -68,6 +69,18 @@ NAMES: dict[type, dict[str, str]] = {
 """Parameters that have another name in the file than inside, mostly with the unit behind it."""
 
 
+EARLIER: dict[type, tuple[str, ...]] = {
+    CloningSettings: ("held_out",),
+    ComfortPrices: ("tolerance",),
+    ParetoSettings: ("relaxations",),
+    ShapeForecast: ("history", "closeness"),
+    DefaultController: ("refitted", "published_at"),
+    FaultSettings: ("disturbance", "temperature_noise", "margin"),
+    Experiment: ("forecast_horizon",),
+}
+"""Parameters whose key was their name before it had its unit; files that have it are still understood."""
+
+
 class Keys(BaseModel):
     """A section of the file; no other keys than these."""
 
@@ -86,6 +99,20 @@ def section(target: type) -> type[Keys]:
         for field in fields(target)
     }
     return create_model(f"{target.__name__}Keys", __base__=Keys, **content)
+
+
+def in_keys_of_today(target: Any, given: Any) -> Any:
+    """What a file says, its earlier keys replaced by those of today."""
+    if not isinstance(given, dict) or not (isinstance(target, type) and is_dataclass(target)):
+        return given
+    hints, content = get_type_hints(target), copy(given)
+    for name in (field.name for field in fields(target)):
+        key = key_of(target, name)
+        if name in EARLIER.get(target, ()) and name in content and key not in content:
+            content[key] = content.pop(name)
+        if key in content:
+            content[key] = in_keys_of_today(hints[name], content[key])
+    return content
 
 
 def key_of(target: type, name: str) -> str:
