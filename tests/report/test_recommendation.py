@@ -51,3 +51,13 @@ def test_where_nothing_was_judged_nothing_is_said():
     assert recommendation_sentence("a home", home(None)) == ""
     assert recommendation_rows(home(None)) == []
     assert recommendation_section("a home", home(None)) == ""
+
+
+def test_of_the_same_cost_comfort_is_the_reason():
+    free = [
+        {"method": "Rule", "daily_cost": 0.0, "mean_temperature_deviation": 0.45},
+        {"method": "no battery", "daily_cost": 0.0, "mean_temperature_deviation": 0.0},
+    ]
+    said = recommendation_sentence("a home", home("no battery", free))
+    assert "no battery, since it cost $0.000" in said
+    assert "of those that cost as little it keeps comfort best" in said

@@ -22,7 +22,9 @@ def recommendation_sentence(name: str, home: HomeResults) -> str:
         f"it cost {cost} a day {at_equal_comfort(home)} on {found.days} training days that it had not been "
         "fitted to"
     )
-    if chosen is least:
+    if chosen.daily_cost == least.daily_cost and chosen is not least:
+        why = f"{costs}, no more than any other, and of those that cost as little it keeps comfort best"
+    elif chosen is least:
         why = f"{costs}, the least of all, and no simpler method came within a standard error of it"
     else:
         why = (
