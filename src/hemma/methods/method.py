@@ -4,6 +4,7 @@ import zlib
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cached_property
 from typing import TypeVar
 
 from hemma.forecasting.observations import PAPER, ObservationModel
@@ -13,6 +14,7 @@ from hemma.methods.looks import UNKNOWN, Look
 from hemma.optimisation.optimum import OptimumProblem
 from hemma.results.store import Store
 from hemma.settings.experiment import Experiment
+from hemma.stages.default import Choice, choose_forecast
 from hemma.stages.demonstrate import Expert
 from hemma.stages.train import TrainingJob
 
@@ -70,6 +72,11 @@ class Known:
     slot may look at the slots of the period up to that one."""
     problem: OptimumProblem | None = None
     """Perfect information over the period, for those that know the future."""
+
+    @cached_property
+    def choice(self) -> Choice:
+        """The forecast that the default controller plans with."""
+        return choose_forecast(self.expert, self.store)
 
 
 @dataclass(frozen=True, kw_only=True)

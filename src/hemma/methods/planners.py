@@ -10,7 +10,6 @@ from hemma.forecasting.ridge import fitted, needed_past
 from hemma.home import Home, Schedule
 from hemma.methods.looks import DASHED, DOTTED, GREY, MIXED, SKY, Look
 from hemma.methods.method import AbstractControl, Group, Known
-from hemma.stages.default import Choice, choose_forecast
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,25 +66,22 @@ class DefaultPlanner(AbstractPlanner):
 
     def forecaster(self, known: Known) -> Forecaster:
         """The chosen one; published prices stand in for it where there are some."""
-        forecaster = self._choice(known).candidate.forecaster
+        forecaster = known.choice.candidate.forecaster
         if not self.knows_published:
             return forecaster
         return PublishedPrices(forecaster, known.expert.case.experiment.default.published_at)
 
     def facts(self, known: Known) -> tuple:
         """What was chosen, and how."""
-        return self._choice(known).candidate.name, known.expert.case.experiment.default
+        return known.choice.candidate.name, known.expert.case.experiment.default
 
     def needed_past(self, known: Known) -> int:
         """As the chosen forecast."""
-        return self._choice(known).candidate.needed
+        return known.choice.candidate.needed
 
     def seconds_to_fit(self, known: Known) -> float:
         """How long the choice took."""
-        return self._choice(known).seconds
-
-    def _choice(self, known: Known) -> Choice:
-        return choose_forecast(known.expert, known.store)
+        return known.choice.seconds
 
 
 MPC_PERFECT = SimplePlanner(
