@@ -14,9 +14,9 @@ from hemma.errors import HemmaError
 from hemma.home import Home, HomeState, Trajectory
 from hemma.home.precision import in_double, in_numpy
 from hemma.optimisation.affine import AffineResponse, affine_response
-from hemma.optimisation.carry_out import carry_out, net_power
-from hemma.optimisation.constraints import add_battery, add_building, power_balance
-from hemma.optimisation.programme import EXACT, Programme
+from hemma.optimisation.carry_out import carry_out
+from hemma.optimisation.odd_prices import best_plan
+from hemma.optimisation.planning import PlanningProblem
 from hemma.types import Action, Array, Exogenous
 
 DEAR = 1000.0
@@ -95,13 +95,9 @@ def comfort_price(home: Home, window: Exogenous, response: AffineResponse) -> fl
 
 def _plan(home: Home, window: Exogenous, response: AffineResponse, energy: float) -> tuple[float, float]:
     """e and h [kW] of the first slot of the best plan."""
-    programme = Programme(window.slots)
-    building = add_building(programme, home, response, comfort_price(home, window, response))
-    store = add_battery(programme, home, window, energy)
-    power_balance(programme, home, window, building.hvac, store)
-    x = programme.solve(EXACT).values
-    e = net_power(home.battery, x[store.charge[:1]], x[store.discharge[:1]])
-    return float(e[0]), float(x[building.hvac[0]])
+    price = comfort_price(home, window, response)
+    plan = best_plan(PlanningProblem(home, window, energy, response, price))
+    return float(plan.battery_power[0]), float(plan.hvac_power[0])
 
 
 def _first(response: AffineResponse, slots: int) -> AffineResponse:

@@ -7,10 +7,11 @@ from jaxtyping import Float
 
 from hemma.home import Home, HomeState
 from hemma.home.precision import in_numpy
-from hemma.optimisation.carry_out import carry_out, net_power
-from hemma.optimisation.constraints import add_battery, power_balance
+from hemma.optimisation.carry_out import carry_out
 from hemma.optimisation.horizon import WHOLE_PERIOD, Horizon
-from hemma.optimisation.programme import EXACT, Programme, SolverSettings
+from hemma.optimisation.odd_prices import best_plan
+from hemma.optimisation.planning import PlanningProblem
+from hemma.optimisation.programme import EXACT, SolverSettings
 from hemma.types import Action, Exogenous
 
 ZERO = 1e-9
@@ -29,21 +30,11 @@ class BatterySchedule:
     """Sum of X1 + X2 [currency] as the home carries it out."""
     bound: float
     """Proven: no schedule of the whole period costs less with this HVAC power [currency]."""
-    within_time: bool
-    """Whether every programme was solved to its gap before the time limit."""
 
     @property
     def gap(self) -> float:
         """(cost - bound) / |cost|: what the solver left open and what a short horizon lost."""
         return relative_gap(self.cost, self.bound)
-
-
-@dataclass(frozen=True)
-class _Planned:
-    power: Float[np.ndarray, "slots"]
-    energy: Float[np.ndarray, "slots"]
-    bound: float
-    within_time: bool
 
 
 def schedule_battery(
@@ -59,50 +50,32 @@ def schedule_battery(
     The energy at the end of a plan has no value, as in objective (1). With a receding ``horizon`` the
     bound is still that of the whole period in one plan, which costs one more programme.
 
-    Raises ``HemmaError`` if a programme has no solution or none was found within the time limit.
+    Raises ``HemmaError`` if a programme has no solution or none was found within the limit of work.
     """
     home, exogenous, hvac_power = in_numpy((home, exogenous, hvac_power))
     energy, powers, plans = float(initial.battery_energy), [], []
     for window in horizon.windows(exogenous.slots, float(home.slot_length)):
         ahead = slice(window.start, window.end)
         part = exogenous.window(window.start, window.end)
-        plan = _plan(home, part, hvac_power[ahead], energy, solver)
+        plan = best_plan(PlanningProblem(home, part, energy, hvac_power[ahead]), solver)
         done = window.stop - window.start
-        powers.append(plan.power[:done])
-        energy = float(np.clip(plan.energy[done - 1], home.battery.min_energy, home.battery.max_energy))
+        powers.append(plan.battery_power[:done])
+        energy = float(
+            np.clip(plan.battery_energy[done - 1], home.battery.min_energy, home.battery.max_energy)
+        )
         plans.append(plan)
     if len(plans) > 1:
-        plans.append(_plan(home, exogenous, hvac_power, float(initial.battery_energy), solver))
+        whole = PlanningProblem(home, exogenous, float(initial.battery_energy), hvac_power)
+        plans.append(best_plan(whole, solver))
     path = carry_out(home, exogenous, Action(np.concatenate(powers), hvac_power), initial)
     return BatterySchedule(
         battery_power=np.asarray(path.steps.action.battery_power),
         battery_energy=np.asarray(path.steps.state.battery_energy),
         cost=float(np.sum(path.steps.costs.transaction) + np.sum(path.steps.costs.ageing)),
         bound=plans[-1].bound,
-        within_time=all(plan.within_time for plan in plans),
     )
 
 
 def relative_gap(cost: float, bound: float) -> float:
     """(cost - bound) / |cost|, absolute where the cost is zero; rounding below zero counts as zero."""
     return max(cost - bound, 0.0) / max(abs(cost), ZERO)
-
-
-def _plan(
-    home: Home,
-    exogenous: Exogenous,
-    hvac_power: Float[np.ndarray, "slots"],
-    energy: float,
-    solver: SolverSettings,
-) -> _Planned:
-    programme = Programme(exogenous.slots)
-    columns = add_battery(programme, home, exogenous, energy)
-    power_balance(programme, home, exogenous, hvac_power, columns)
-    found = programme.solve(solver)
-    x = found.values
-    return _Planned(
-        power=net_power(home.battery, x[columns.charge], x[columns.discharge]),
-        energy=x[columns.energy],
-        bound=found.bound,
-        within_time=found.within_time,
-    )

@@ -107,11 +107,12 @@ def power_balance(
     exogenous: Exogenous,
     hvac: Block | Float[np.ndarray, "slots"],
     battery: BatteryColumns | None,
-) -> None:
+) -> Block:
     """buy - sell - h - e = l - p, equation (8), with cost u+ buy dt - u- sell dt, equation (1).
 
     ``hvac`` holds columns (integers) or known powers [kW] (floats). Never buy and sell in one slot:
     buy <= B z, sell <= S (1 - z) where it could pay, with the largest powers B and S that can occur.
+    Gives the rows of the balance.
     """
     known = np.issubdtype(hvac.dtype, np.floating)
     demand = np.asarray(exogenous.load) - np.asarray(exogenous.pv_generation) + (hvac if known else 0.0)
@@ -128,12 +129,13 @@ def power_balance(
     terms = [(buy, 1.0), (sell, -1.0)]
     terms += [] if known else [(hvac, -1.0)]
     terms += [] if battery is None else [(battery.charge, -1.0), (battery.discharge, 1.0)]
-    programme.add_rows(demand, demand, *terms)
+    balance = programme.add_rows(demand, demand, *terms)
     where = arbitrage_pays(exogenous) & (B > 0) & (S > 0)
     count = int(where.sum())
     z = programme.add_columns(0.0, 1.0, whole=True, entries=count)
     programme.add_rows(-np.inf, 0.0, (buy[where], 1.0), (z, -B[where]))
     programme.add_rows(-np.inf, S[where], (sell[where], 1.0), (z, S[where]))
+    return balance
 
 
 def add_building(programme: Programme, home: Home, response: AffineResponse, price: float) -> ThermalColumns:
@@ -179,10 +181,10 @@ def thermal_dynamics(
         programme.add_rows(-v * earlier, -v * earlier, *terms, *temperature_before(-v))
 
 
-def comfort_budget(programme: Programme, columns: ThermalColumns, budget: float) -> None:
-    """Sum over the slots of excess + lack <= D [degC]: the bill at equal comfort."""
+def comfort_budget(programme: Programme, columns: ThermalColumns, budget: float) -> Block:
+    """Sum over the slots of excess + lack <= D [degC]: the bill at equal comfort. Gives its row."""
     both = np.concatenate([columns.excess, columns.lack])
-    programme.add_rows(0.0, budget, (both[None, :], 1.0))
+    return programme.add_rows(0.0, budget, (both[None, :], 1.0))
 
 
 def _before(first: np.ndarray, block: Block) -> Block:

@@ -12,8 +12,10 @@ from hemma.home import Home, HomeState, Trajectory
 from hemma.home.precision import in_numpy
 from hemma.optimisation.affine import AffineResponse, affine_response
 from hemma.optimisation.battery import relative_gap
-from hemma.optimisation.carry_out import carry_out, net_power
-from hemma.optimisation.constraints import add_battery, add_building, comfort_budget, power_balance
+from hemma.optimisation.carry_out import carry_out
+from hemma.optimisation.constraints import add_building
+from hemma.optimisation.odd_prices import best_plan
+from hemma.optimisation.planning import PlanningProblem
 from hemma.optimisation.programme import EXACT, Programme, SolverSettings
 from hemma.types import Action, Array, Exogenous
 
@@ -36,8 +38,6 @@ class Optimum(eqx.Module):
     """Sum of X3 [degC] of that replay."""
     budget: float
     """D [degC], the largest sum of X3 that was allowed."""
-    within_time: bool
-    """Whether the solver finished before its time limit; if not, ``gap`` says what it left open."""
 
     @property
     def gap(self) -> float:
@@ -67,25 +67,16 @@ class OptimumProblem:
         Without a budget, D is the least reachable deviation. Without ``battery`` e = 0.
 
         Raises ``HemmaError`` if the budget is below the least reachable deviation (by more than rounding),
-        or if the solver found no schedule within its time limit.
+        or if the solver found no schedule within its limit of work.
         """
         budget = self._checked(budget)
-        programme = Programme(self.exogenous.slots)
-        building = add_building(programme, self.home, self.response, price=0.0)
-        comfort_budget(programme, building, budget + BUDGET_SLACK)
-        store = None
-        if battery:
-            energy = float(self.initial.battery_energy)
-            store = add_battery(programme, self.home, self.exogenous, energy)
-        power_balance(programme, self.home, self.exogenous, building.hvac, store)
-        found = programme.solve(solver)
-        x = found.values
-        e = np.zeros(self.exogenous.slots)
-        if store is not None:
-            e = net_power(self.home.battery, x[store.charge], x[store.discharge])
-        path = carry_out(
-            self.home, self.exogenous, Action(e, x[building.hvac]), self.initial, self.disturbances
+        energy = float(self.initial.battery_energy) if battery else None
+        found = best_plan(
+            PlanningProblem(self.home, self.exogenous, energy, self.response, budget=budget + BUDGET_SLACK),
+            solver,
         )
+        actions = Action(found.battery_power, found.hvac_power)
+        path = carry_out(self.home, self.exogenous, actions, self.initial, self.disturbances)
         costs = path.steps.costs
         return Optimum(
             actions=path.steps.action,
@@ -94,7 +85,6 @@ class OptimumProblem:
             bound=found.bound,
             deviation=float(np.sum(costs.temperature_deviation)),
             budget=budget,
-            within_time=found.within_time,
         )
 
     def _checked(self, budget: float | None) -> float:

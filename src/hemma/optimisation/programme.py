@@ -1,7 +1,7 @@
 """A linear programme with whole-number columns, written down block by block and solved by HiGHS."""
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import highspy
@@ -25,8 +25,14 @@ class SolverSettings:
 
     relative_gap: float = 1e-6
     """Largest (objective - bound) / |objective| that branch and bound proves before it stops."""
-    time_limit: float = 60.0
-    """Longest time for one programme [s]."""
+    max_nodes: int = 200
+    """Nodes after which branch and bound gives up, with what it has proved by then."""
+    rounds: int = 8
+    """Times that modes are sought anew with better prices (``optimisation.odd_prices``)."""
+
+    def proves(self, objective: float, bound: float) -> bool:
+        """Whether the bound is within the gap."""
+        return objective - bound <= self.relative_gap * abs(objective)
 
 
 @dataclass(frozen=True)
@@ -39,8 +45,8 @@ class Solution:
     """c'x of these values."""
     bound: float
     """No feasible x has a smaller objective: by the duals of a linear programme, else by branch and bound."""
-    within_time: bool
-    """Whether the solver finished before the time limit."""
+    row_duals: Float[np.ndarray, "rows"]
+    """What one more unit of each row's limit costs; of no use where there are whole numbers."""
 
 
 EXACT = SolverSettings()
@@ -75,8 +81,30 @@ class Programme:
         self._column_count += entries
         return np.arange(self._column_count - entries, self._column_count)
 
-    def add_rows(self, lower: Bound, upper: Bound, *terms: tuple[np.ndarray, Bound]) -> None:
+    @property
+    def has_whole(self) -> bool:
+        """Whether there are whole numbers, so that branch and bound is needed."""
+        return any(block[:, 3].any() for block in self._columns)
+
+    def relaxed(self) -> "Programme":
+        """The same without whole numbers."""
+        columns = np.concatenate(self._columns)
+        columns[:, 3] = 0.0
+        return replace(self, _columns=[columns])
+
+    def fixed(self, values: Float[np.ndarray, "whole"]) -> "Programme":
+        """The same with these values of the whole numbers, in the order in which they were added."""
+        columns = np.concatenate(self._columns)
+        columns[columns[:, 3] > 0, :2] = values[:, None]
+        columns[:, 3] = 0.0
+        return replace(self, _columns=[columns])
+
+    def add_rows(
+        self, lower: Bound, upper: Bound, *terms: tuple[np.ndarray, Bound]
+    ) -> Int[np.ndarray, "entries"]:
         """Add rows L <= sum of coefficient * x <= U, one for each entry of the terms' column blocks.
+
+        Gives their indices.
 
         Each term is (columns, coefficient); columns of shape (rows, several) are all summed in their row.
         """
@@ -91,11 +119,12 @@ class Programme:
         block[:, 0], block[:, 1] = lower, upper
         self._rows.append(block)
         self._row_count += entries
+        return rows
 
     def solve(self, settings: SolverSettings) -> Solution:
         """Solve it the same way every time (one thread, fixed seed).
 
-        Raises ``HemmaError`` where there is no solution, or none was found within the time limit.
+        Raises ``HemmaError`` where there is no solution, or none was found within the limit of work.
         """
         columns, rows, matrix = np.concatenate(self._columns), np.concatenate(self._rows), self._matrix()
         solver = _solver(settings)
@@ -118,7 +147,7 @@ class Programme:
             values=np.asarray(found.col_value),
             objective=float(info.objective_function_value),
             bound=bound,
-            within_time=status == highspy.HighsModelStatus.kOptimal,
+            row_duals=np.asarray(found.row_dual),
         )
 
     def _matrix(self) -> csr_array:
@@ -155,7 +184,7 @@ def _solver(settings: SolverSettings) -> highspy.Highs:
     solver.setOptionValue("threads", 1)
     solver.setOptionValue("random_seed", 0)
     solver.setOptionValue("mip_rel_gap", settings.relative_gap)
-    solver.setOptionValue("time_limit", settings.time_limit)
+    solver.setOptionValue("mip_max_nodes", settings.max_nodes)
     solver.setOptionValue("primal_feasibility_tolerance", FEASIBILITY)
     solver.setOptionValue("dual_feasibility_tolerance", FEASIBILITY)
     return solver
@@ -194,8 +223,8 @@ def _model(columns: np.ndarray, rows: np.ndarray, matrix: csr_array) -> highspy.
 
 def _no_solution(status: highspy.HighsModelStatus, solver: highspy.Highs, settings: SolverSettings) -> str:
     came = solver.modelStatusToString(status).lower()
-    if status == highspy.HighsModelStatus.kTimeLimit:
-        cure = f"allow more than {settings.time_limit:g} s (time_limit) or plan a shorter horizon"
+    if status == highspy.HighsModelStatus.kSolutionLimit:
+        cure = f"allow more than {settings.max_nodes} nodes (max_nodes) or plan a shorter horizon"
     else:
         cure = "check that the traces are finite and that the home's initial state is within its limits"
     return f"optimiser: expected a schedule, the solver reports '{came}'; {cure}"

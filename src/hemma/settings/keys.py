@@ -22,7 +22,6 @@ from hemma.identification.settings import IdentificationSettings
 from hemma.irl.cloning import CloningSettings
 from hemma.optimisation.horizon import Horizon
 from hemma.optimisation.hvac import DescentSettings
-from hemma.optimisation.programme import SolverSettings
 from hemma.settings.experiment import ComfortPrices, DefaultController, Experiment, ParetoSettings
 from hemma.settings.faults import FaultSettings
 from hemma.settings.plausibility import LONGEST_LIST, LONGEST_WORD, Limits, limits_of
@@ -49,7 +48,6 @@ NAMES: dict[type, dict[str, str]] = {
     IdentificationSettings: {"window": "window_h"},
     Horizon: {"planned": "planned_h", "carried_out": "carried_out_h"},
     DescentSettings: {"tolerance": "tolerance_kw"},
-    SolverSettings: {"time_limit": "time_limit_s"},
     CloningSettings: {"held_out": "held_out_every_days"},
     ComfortPrices: {"tolerance": "tolerance_c"},
     ParetoSettings: {"relaxations": "relaxations_c"},

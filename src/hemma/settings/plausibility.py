@@ -133,7 +133,8 @@ LIMITS: dict[type, dict[str, Limits]] = {
     DescentSettings: {"tolerance": Limits(0, 0.1, "a power in kW", _above("W: divide by 1000"))},
     SolverSettings: {
         "relative_gap": Limits(0, 0.1, "a fraction", _percent),
-        "time_limit": Limits(0.01, 3600, "a time in s", _above("ms: divide by 1000")),
+        "max_nodes": Limits(1, 10**6, "a number of nodes"),
+        "rounds": Limits(1, 100, "a number of rounds"),
     },
     HierarchySettings: {"seed": Limits(0, 2**31 - 1, "a seed")},
     MaxEntSettings: {"windows": Limits(1, 10_000, "windows")},
