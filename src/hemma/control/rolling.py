@@ -96,7 +96,7 @@ def comfort_price(home: Home, window: Exogenous, response: AffineResponse) -> fl
 def _plan(home: Home, window: Exogenous, response: AffineResponse, energy: float) -> tuple[float, float]:
     """e and h [kW] of the first slot of the best plan."""
     price = comfort_price(home, window, response)
-    plan = best_plan(PlanningProblem(home, window, energy, response, price))
+    plan = best_plan(PlanningProblem(home, window, energy, response, price), branches=False)
     return float(plan.battery_power[0]), float(plan.hvac_power[0])
 
 

@@ -44,22 +44,25 @@ class Convex:
         ends = np.cumsum(self.lengths, axis=1)
         return np.unique(np.round(np.concatenate([[0.0], ends.ravel()]), 9))
 
-    def convolved(self, slopes: Pieces, lengths: Pieces, cut: Row, cut_right: Row) -> "Convex":
+    def convolved(self, slopes: Pieces, lengths: Pieces, cut: Row, length: float) -> "Convex":
         """Least sum with a second function over all ways to share the variable, on a shorter interval.
 
         The second function is 0 at its left end and has these pieces, in any order. ``cut`` is taken off at
-        the left, where the interval then begins, and ``cut_right`` at the right.
+        the left, where an interval of exactly ``length`` begins: what rounding takes from it would grow with
+        every slot.
         """
         slopes = np.concatenate([self.slopes, slopes], axis=1)
         lengths = np.concatenate([self.lengths, lengths], axis=1)
         order = np.argsort(np.where(lengths > EMPTY, slopes, np.inf), axis=1, kind="stable")
         slopes, lengths = np.take_along_axis(slopes, order, 1), np.take_along_axis(lengths, order, 1)
         ends = np.cumsum(lengths, axis=1)
-        last = ends[:, -1:] - cut_right[:, None]
         left = np.clip(cut[:, None] - (ends - lengths), 0.0, lengths)
-        right = np.clip(ends - last, 0.0, lengths)
+        right = np.clip(ends - cut[:, None] - length, 0.0, lengths)
         start = self.start + np.sum(slopes * left, axis=1)
-        return _packed(start, slopes, np.maximum(lengths - left - right, 0.0))
+        found = _packed(start, slopes, np.maximum(lengths - left - right, 0.0))
+        total = np.sum(found.lengths, axis=1, keepdims=True)
+        exact = np.where(total > 0, length / np.maximum(total, EMPTY), 1.0)
+        return replace(found, lengths=found.lengths * exact)
 
     def bent(self, low: float, high: float, slope: float) -> "Convex":
         """Plus ``slope`` times the distance from [``low``, ``high``]."""

@@ -24,18 +24,24 @@ Row = Float[np.ndarray, "modes"]
 class SlotModes:
     """What a slot may be; one entry a mode."""
 
-    buys: Row
-    """1 where the slot buys, 0 where it sells; the switch z of ``power_balance``."""
     charges: Row
     """1 where it may charge, 0 where it may discharge; the switch z of ``charge_or_discharge``."""
-    price: Row
-    """Of all its energy [currency/kWh]: never above what the mode costs."""
     most_charge: Row
     """[kW]."""
     most_discharge: Row
     """[kW]."""
+    buys: Row
+    """1 where the slot buys, 0 where it sells; the switch z of ``power_balance``."""
+    price: Row
+    """Of the HVAC's energy [currency/kWh]."""
+    kink: Row
+    """Battery power at which its price changes [kW]."""
+    below: Row
+    """Its price for less [currency/kWh]."""
+    above: Row
+    """And for more."""
     constant: Row
-    """Cost of the demand that nobody decides [currency]."""
+    """Cost without battery and HVAC [currency]."""
 
 
 @dataclass(frozen=True)
@@ -117,14 +123,19 @@ def best_modes(
 
 
 def _stored(ahead: Convex, battery: Battery, modes: SlotModes, mode: np.ndarray, dt: float) -> Convex:
-    """min over e of price e dt + ageing + A(E'), for every pair and its mode."""
+    """min over e of the cost of e + ageing + A(E'), for every pair and its mode."""
     eta_c, eta_d = float(battery.charging_efficiency), float(battery.discharging_efficiency)
-    k_e, price = float(battery.ageing_cost), modes.price[mode]
-    charge, discharge = modes.most_charge[mode] * dt, modes.most_discharge[mode] * dt
-    slopes = np.stack([-(price + k_e) / eta_c, -(price - k_e) * eta_d], axis=1)
-    lengths = np.stack([eta_c * charge, discharge / eta_d], axis=1)
-    full = ahead.raised((price + k_e) * charge + modes.constant[mode])
-    return full.convolved(slopes, lengths, lengths[:, 0], lengths[:, 1])
+    k_e, kink = float(battery.ageing_cost), modes.kink[mode]
+    below, above = modes.below[mode], modes.above[mode]
+    charge, discharge = modes.most_charge[mode], modes.most_discharge[mode]
+    cheap, dear = np.clip(kink, 0.0, charge), np.clip(-kink, 0.0, discharge)
+    slopes = [-(below + k_e) / eta_c, -(above + k_e) / eta_c, -(below - k_e) * eta_d, -(above - k_e) * eta_d]
+    powers = [eta_c * cheap, eta_c * (charge - cheap), (discharge - dear) / eta_d, dear / eta_d]
+    lengths = np.stack(powers, axis=1) * dt
+    most = below * cheap + above * (charge - cheap) + k_e * charge
+    full = ahead.raised(most * dt + modes.constant[mode])
+    capacity = float(battery.max_energy - battery.min_energy)
+    return full.convolved(np.stack(slopes, axis=1), lengths, np.sum(lengths[:, :2], axis=1), capacity)
 
 
 def _cooled(ahead: Convex, building: Building, t: int, ranges: np.ndarray, cost: np.ndarray) -> Convex:
@@ -137,7 +148,8 @@ def _cooled(ahead: Convex, building: Building, t: int, ranges: np.ndarray, cost:
     reach = np.full(len(cost), abs(b) * most)
     if b > 0:
         priced = priced.raised(cost * most)
-    return priced.convolved((-cost / b)[:, None], reach[:, None], reach, reach).stretched(1 / a)
+    length = a * float(np.ptp(ranges[t]))
+    return priced.convolved((-cost / b)[:, None], reach[:, None], reach, length).stretched(1 / a)
 
 
 def _undominated(pairs: _Pairs, tolerance: float) -> Int[np.ndarray, "kept"]:

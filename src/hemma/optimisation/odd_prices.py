@@ -1,14 +1,14 @@
 """The best plan at any prices: a linear programme, or modes first where buying and selling are odd.
 
 Where selling is dearer than buying or burning energy pays, modes (``optimisation.modes``) take the place of
-branch and bound. They prove a bound with prices of the other slots' energy and of comfort that are the duals of
-a linear programme; see ``docs/expert.md``.
+branch and bound. They prove a bound with prices of comfort and of the other slots' energy that are the duals
+of a linear programme; see ``docs/expert.md``.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from hemma.optimisation.constraints import idling_pays
 from hemma.optimisation.modes import BestModes, Building, SlotModes, best_modes
@@ -27,20 +27,23 @@ class _Duals:
     """[currency/kWh]."""
     comfort: float
     """[currency/degC]."""
+    hvac_power: Float[np.ndarray, "slots"]
+    """h of the plan they come from [kW]."""
 
 
-def best_plan(problem: PlanningProblem, settings: SolverSettings = EXACT) -> Plan:
+def best_plan(problem: PlanningProblem, settings: SolverSettings = EXACT, branches: bool = True) -> Plan:
     """The plan with the least objective, and the bound that was proved within the settings' work.
+
+    What the modes leave open goes to branch and bound, unless it ``branches`` not: a plan whose first slot
+    alone is carried out is not worth it.
 
     Raises ``HemmaError`` if there is no plan.
     """
     whole = written(problem)
-    if not whole.programme.has_whole:
-        return whole.read(whole.programme.solve(settings))
-    if not _separable(problem):
+    if not whole.programme.has_whole or not _separable(problem):
         return whole.read(whole.programme.solve(settings))
     plan = _by_modes(problem, whole, settings)
-    if settings.proves(plan.objective, plan.bound) or settings.max_nodes == 0:
+    if settings.proves(plan.objective, plan.bound) or not branches:
         return plan
     branched = whole.read(whole.programme.solve(settings))
     best = min(plan, branched, key=lambda found: found.objective)
@@ -59,8 +62,8 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
     duals, bound = _duals(whole, relaxed), relaxed.bound
     tolerance = FORGIVEN * settings.relative_gap * abs(relaxed.objective) / problem.exogenous.slots
     best: Plan | None = None
-    for _ in range(settings.rounds):
-        modes = _modes(problem, duals, tolerance)
+    for count in range(settings.rounds):
+        modes = _modes(problem, duals, tolerance, bends=count % 2 == 0)
         bound = max(bound, modes.bound - duals.comfort * (problem.budget or 0.0))
         inside = _in_modes(problem, modes)
         found = inside.programme.solve(settings)
@@ -78,10 +81,11 @@ def _duals(within: WrittenProblem, found: Solution) -> _Duals:
     comfort = problem.comfort_price
     if within.budget is not None:
         comfort = max(-float(found.row_duals[within.budget[0]]), 0.0)
-    return _Duals(found.row_duals[within.balance] / float(problem.home.slot_length), comfort)
+    energy = found.row_duals[within.balance] / float(problem.home.slot_length)
+    return _Duals(energy, comfort, within.read(found).hvac_power)
 
 
-def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float) -> BestModes:
+def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float, bends: bool) -> BestModes:
     home, response = problem.home, problem.response
     building = None
     if response is not None:
@@ -95,41 +99,81 @@ def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float) -> BestMod
             price=duals.comfort,
         )
     energy = float(home.battery.min_energy) if problem.energy is None else problem.energy
-    return best_modes(home, energy, _slot_modes(problem, duals), building, tolerance)
+    return best_modes(home, energy, _slot_modes(problem, duals, bends), building, tolerance)
 
 
-def _slot_modes(problem: PlanningProblem, duals: _Duals) -> list[SlotModes]:
-    """The modes of every slot; those in which no grid power of the right sign is possible are left out.
-
-    Where buying costs no less than selling brings, X1 = max over p in [u-, u+] of p g dt: any such p
-    bounds it from below, the dual of the power balance well.
+def _slot_modes(problem: PlanningProblem, duals: _Duals, bends: bool) -> list[SlotModes]:
+    """The modes of every slot. Where burning energy pays, battery and HVAC are told apart in two ways, see
+    ``_Slot``; ``bends`` chooses.
     """
     home, x = problem.home, problem.exogenous
-    battery, dt = home.battery, float(home.slot_length)
-    usable = problem.energy is not None
-    C, D = float(battery.max_charging_power) * usable, float(battery.max_discharging_power) * usable
-    u, v = np.asarray(x.buying_price, float), np.asarray(x.selling_price, float)
+    usable, known = problem.energy is not None, problem.response is None
+    C, D = float(home.battery.max_charging_power) * usable, float(home.battery.max_discharging_power) * usable
     demand = np.asarray(x.load, float) - np.asarray(x.pv_generation, float)
-    most = 0.0
-    if problem.response is None:
-        demand = demand + problem.hvac
-    else:
-        most = float(home.hvac.max_power)
-    burns = idling_pays(battery, x) & usable
+    if known:
+        demand = demand + duals.hvac_power
+    most = 0.0 if known else float(home.hvac.max_power)
+    expected = np.zeros(x.slots) if known else duals.hvac_power
+    burns = idling_pays(home.battery, x) & usable
     found = []
     for t in range(x.slots):
+        u, v = float(x.buying_price[t]), float(x.selling_price[t])
+        slot = _Slot(u, v, float(demand[t]), most, float(home.slot_length))
         rows = []
         for charges, c, d in ((1.0, C, 0.0), (0.0, 0.0, D)) if burns[t] else ((1.0, C, D),):
-            low, high = demand[t] - d, demand[t] + most + c
-            if high <= 0 or low >= 0:
-                rows.append((float(low >= 0), charges, u[t] if low >= 0 else v[t], c, d))
-            elif v[t] > u[t]:
-                rows += [(1.0, charges, u[t], c, d), (0.0, charges, v[t], c, d)]
+            if burns[t] and bends and u > v:
+                parts = slot.bent(c, d, float(expected[t]))
             else:
-                rows.append((1.0, charges, np.clip(duals.energy[t], v[t], u[t]), c, d))
-        table = np.array(rows)
-        found.append(SlotModes(*table.T, constant=table[:, 2] * demand[t] * dt))
+                parts = slot.priced(c, d, float(duals.energy[t]))
+            rows += [(charges, c, d, *part) for part in parts]
+        found.append(SlotModes(*np.array(rows).T))
     return found
+
+
+@dataclass(frozen=True)
+class _Slot:
+    """X1 as a sum of what battery and HVAC cost each for itself, never more than it is.
+
+    A part is (buys, price of h, kink, price of e below and above it, constant); X1 is the least of the parts.
+    """
+
+    u: float
+    """u+ [currency/kWh]."""
+    v: float
+    """u- [currency/kWh]."""
+    demand: float
+    """l - p, and h where it is known [kW]."""
+    most_hvac: float
+    """[kW]."""
+    length: float
+    """dt [h]."""
+
+    def priced(self, charge: float, discharge: float, dual: float) -> list[tuple[float, ...]]:
+        """One price for all: that of the side on which g must lie; u+ or u- where X1 is concave; or the dual.
+
+        For p in [u-, u+] p g dt is never above X1; the dual of the power balance makes most of it.
+        """
+        if self.demand - discharge >= 0:
+            choices = [(1.0, self.u)]
+        elif self.demand + self.most_hvac + charge <= 0:
+            choices = [(0.0, self.v)]
+        elif self.v > self.u:
+            choices = [(1.0, self.u), (0.0, self.v)]
+        else:
+            choices = [(1.0, float(np.clip(dual, self.v, self.u)))]
+        return [(buys, p, 0.0, p, p, p * self.demand * self.length) for buys, p in choices]
+
+    def bent(self, charge: float, discharge: float, hvac: float) -> list[tuple[float, ...]]:
+        """X1 as it is for the battery at h = ``hvac``; more of h costs at least u-, less saves at most u+."""
+        expected = self.demand + hvac
+        if expected - discharge >= 0 or self.most_hvac == 0:
+            choices = [self.u]
+        elif expected + charge <= 0:
+            choices = [self.v]
+        else:
+            choices = [self.u, self.v]
+        without = max(self.u * expected, self.v * expected)
+        return [(1.0, p, -expected, self.v, self.u, (without - p * hvac) * self.length) for p in choices]
 
 
 def _in_modes(problem: PlanningProblem, modes: BestModes) -> WrittenProblem:
@@ -139,7 +183,7 @@ def _in_modes(problem: PlanningProblem, modes: BestModes) -> WrittenProblem:
     """
     x = problem.exogenous
     u, v = np.asarray(x.buying_price, float), np.asarray(x.selling_price, float)
-    odd: Bool[np.ndarray, "slots"] = v > u
+    odd = v > u
     price = np.where(modes.buys > 0, u, v)
     prices = replace(x, buying_price=np.where(odd, price, u), selling_price=np.where(odd, price, v))
     inside = written(replace(problem, exogenous=prices))

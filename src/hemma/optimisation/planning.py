@@ -1,4 +1,4 @@
-"""One plan: battery and HVAC together over some slots, written down as a programme and read off its solution."""
+"""One plan: battery and HVAC together over some slots, written as a programme and read off its solution."""
 
 from dataclasses import dataclass
 
