@@ -32,16 +32,21 @@ class SlotModes:
     """[kW]."""
     buys: Row
     """1 where the slot buys, 0 where it sells; the switch z of ``power_balance``."""
-    price: Row
+    hvac_price: Row
     """Of the HVAC's energy [currency/kWh]."""
-    kink: Row
-    """Battery power at which its price changes [kW]."""
-    below: Row
-    """Its price for less [currency/kWh]."""
-    above: Row
-    """And for more."""
     constant: Row
     """Cost without battery and HVAC [currency]."""
+    prices: Float[np.ndarray, "modes 3"]
+    """Of the battery's energy, rising with its power [currency/kWh]."""
+    kinks: Float[np.ndarray, "2"]
+    """Battery powers at which one price ends and the next begins [kW]."""
+
+    def pieces(self, mode: Int[np.ndarray, "pairs"], charging: bool) -> Float[np.ndarray, "pairs 3"]:
+        """How much power has each price [kW], within what may be charged or discharged."""
+        low = np.zeros(len(mode)) if charging else -self.most_discharge[mode]
+        high = self.most_charge[mode] if charging else np.zeros(len(mode))
+        edges = np.clip(self.kinks, low[:, None], high[:, None])
+        return np.diff(np.column_stack([low, edges, high]), axis=1)
 
 
 @dataclass(frozen=True)
@@ -100,12 +105,12 @@ def best_modes(
     trace, complete = [], True
     for t in reversed(range(count)):
         modes = slots[t]
-        mode = np.repeat(np.arange(len(modes.price)), len(store.start))
-        after = np.tile(np.arange(len(store.start)), len(modes.price))
+        mode = np.repeat(np.arange(len(modes.buys)), len(store.start))
+        after = np.tile(np.arange(len(store.start)), len(modes.buys))
         store = _stored(store.of(after), battery, modes, mode, dt)
         indoors = indoors.of(after)
         if building is not None:
-            indoors = _cooled(indoors, building, t, ranges, modes.price[mode] * dt)
+            indoors = _cooled(indoors, building, t, ranges, modes.hvac_price[mode] * dt)
         pairs = _Pairs(store, indoors, mode, after)
         kept = _undominated(pairs, tolerance)
         complete = complete and len(kept) <= MOST_PAIRS
@@ -124,18 +129,17 @@ def best_modes(
 
 def _stored(ahead: Convex, battery: Battery, modes: SlotModes, mode: np.ndarray, dt: float) -> Convex:
     """min over e of the cost of e + ageing + A(E'), for every pair and its mode."""
-    eta_c, eta_d = float(battery.charging_efficiency), float(battery.discharging_efficiency)
-    k_e, kink = float(battery.ageing_cost), modes.kink[mode]
-    below, above = modes.below[mode], modes.above[mode]
-    charge, discharge = modes.most_charge[mode], modes.most_discharge[mode]
-    cheap, dear = np.clip(kink, 0.0, charge), np.clip(-kink, 0.0, discharge)
-    slopes = [-(below + k_e) / eta_c, -(above + k_e) / eta_c, -(below - k_e) * eta_d, -(above - k_e) * eta_d]
-    powers = [eta_c * cheap, eta_c * (charge - cheap), (discharge - dear) / eta_d, dear / eta_d]
-    lengths = np.stack(powers, axis=1) * dt
-    most = below * cheap + above * (charge - cheap) + k_e * charge
-    full = ahead.raised(most * dt + modes.constant[mode])
+    eta_c, eta_d, k_e = (
+        float(x) for x in (battery.charging_efficiency, battery.discharging_efficiency, battery.ageing_cost)
+    )
+    prices = modes.prices[mode]
+    charged, discharged = modes.pieces(mode, True) * dt, modes.pieces(mode, False) * dt
+    stored, taken = charged * eta_c, discharged / eta_d
+    slopes = np.concatenate([-(prices + k_e) / eta_c, -(prices - k_e) * eta_d], axis=1)
+    full = ahead.raised(np.sum((prices + k_e) * charged, axis=1) + modes.constant[mode])
     capacity = float(battery.max_energy - battery.min_energy)
-    return full.convolved(np.stack(slopes, axis=1), lengths, np.sum(lengths[:, :2], axis=1), capacity)
+    lengths = np.concatenate([stored, taken], axis=1)
+    return full.convolved(slopes, lengths, np.sum(stored, axis=1), capacity)
 
 
 def _cooled(ahead: Convex, building: Building, t: int, ranges: np.ndarray, cost: np.ndarray) -> Convex:

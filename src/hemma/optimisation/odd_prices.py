@@ -27,8 +27,6 @@ class _Duals:
     """[currency/kWh]."""
     comfort: float
     """[currency/degC]."""
-    hvac_power: Float[np.ndarray, "slots"]
-    """h of the plan they come from [kW]."""
 
 
 def best_plan(problem: PlanningProblem, settings: SolverSettings = EXACT, branches: bool = True) -> Plan:
@@ -62,8 +60,8 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
     duals, bound = _duals(whole, relaxed), relaxed.bound
     tolerance = FORGIVEN * settings.relative_gap * abs(relaxed.objective) / problem.exogenous.slots
     best: Plan | None = None
-    for count in range(settings.rounds):
-        modes = _modes(problem, duals, tolerance, bends=count % 2 == 0)
+    for _ in range(settings.rounds):
+        modes = _modes(problem, duals, tolerance)
         bound = max(bound, modes.bound - duals.comfort * (problem.budget or 0.0))
         inside = _in_modes(problem, modes)
         found = inside.programme.solve(settings)
@@ -82,10 +80,10 @@ def _duals(within: WrittenProblem, found: Solution) -> _Duals:
     if within.budget is not None:
         comfort = max(-float(found.row_duals[within.budget[0]]), 0.0)
     energy = found.row_duals[within.balance] / float(problem.home.slot_length)
-    return _Duals(energy, comfort, within.read(found).hvac_power)
+    return _Duals(energy, comfort)
 
 
-def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float, bends: bool) -> BestModes:
+def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float) -> BestModes:
     home, response = problem.home, problem.response
     building = None
     if response is not None:
@@ -99,81 +97,38 @@ def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float, bends: boo
             price=duals.comfort,
         )
     energy = float(home.battery.min_energy) if problem.energy is None else problem.energy
-    return best_modes(home, energy, _slot_modes(problem, duals, bends), building, tolerance)
+    return best_modes(home, energy, _slot_modes(problem, duals.energy), building, tolerance)
 
 
-def _slot_modes(problem: PlanningProblem, duals: _Duals, bends: bool) -> list[SlotModes]:
-    """The modes of every slot. Where burning energy pays, battery and HVAC are told apart in two ways, see
-    ``_Slot``; ``bends`` chooses.
+def _slot_modes(problem: PlanningProblem, duals: Float[np.ndarray, "slots"]) -> list[SlotModes]:
+    """The modes of every slot, each with its cost as a sum of what battery and HVAC cost by themselves.
+
+    Where X1 is concave (u- > u+) a mode has the price u+ or u- for all. Where it is convex and s is in
+    [u-, u+], X1 is at least s h plus its least over h of X1 - s h: u- e, s e or u+ e, with kinks where the
+    HVAC can no longer make g zero. The dual of the power balance is the s that makes most of it.
     """
     home, x = problem.home, problem.exogenous
-    usable, known = problem.energy is not None, problem.response is None
+    usable = problem.energy is not None
     C, D = float(home.battery.max_charging_power) * usable, float(home.battery.max_discharging_power) * usable
     demand = np.asarray(x.load, float) - np.asarray(x.pv_generation, float)
-    if known:
-        demand = demand + duals.hvac_power
-    most = 0.0 if known else float(home.hvac.max_power)
-    expected = np.zeros(x.slots) if known else duals.hvac_power
-    burns = idling_pays(home.battery, x) & usable
+    most = float(home.hvac.max_power)
+    if problem.response is None:
+        demand, most = demand + problem.hvac, 0.0
+    burns, dt = idling_pays(home.battery, x) & usable, float(home.slot_length)
     found = []
     for t in range(x.slots):
-        u, v = float(x.buying_price[t]), float(x.selling_price[t])
-        slot = _Slot(u, v, float(demand[t]), most, float(home.slot_length))
-        rows = []
-        for charges, c, d in ((1.0, C, 0.0), (0.0, 0.0, D)) if burns[t] else ((1.0, C, D),):
-            if burns[t] and bends and u > v:
-                parts = slot.bent(c, d, float(expected[t]))
-            else:
-                parts = slot.priced(c, d, float(duals.energy[t]))
-            rows += [(charges, c, d, *part) for part in parts]
-        found.append(SlotModes(*np.array(rows).T))
+        u, v, idle = float(x.buying_price[t]), float(x.selling_price[t]), float(demand[t])
+        if v > u:
+            sides = [(1.0, u)] * (idle + most + C > 0) + [(0.0, v)] * (idle - D < 0)
+            costs = [(buys, p, p * idle * dt, p, p, p) for buys, p in sides]
+        else:
+            s = float(np.clip(duals[t], v, u))
+            constant = u * max(idle, 0.0) + s * float(np.clip(idle, -most, 0.0)) + v * min(idle + most, 0.0)
+            costs = [(1.0, s, constant * dt, v, s, u)]
+        powers = [(1.0, C, 0.0), (0.0, 0.0, D)] if burns[t] else [(1.0, C, D)]
+        table = np.array([power + cost for power in powers for cost in costs])
+        found.append(SlotModes(*table[:, :6].T, prices=table[:, 6:], kinks=np.array([-idle - most, -idle])))
     return found
-
-
-@dataclass(frozen=True)
-class _Slot:
-    """X1 as a sum of what battery and HVAC cost each for itself, never more than it is.
-
-    A part is (buys, price of h, kink, price of e below and above it, constant); X1 is the least of the parts.
-    """
-
-    u: float
-    """u+ [currency/kWh]."""
-    v: float
-    """u- [currency/kWh]."""
-    demand: float
-    """l - p, and h where it is known [kW]."""
-    most_hvac: float
-    """[kW]."""
-    length: float
-    """dt [h]."""
-
-    def priced(self, charge: float, discharge: float, dual: float) -> list[tuple[float, ...]]:
-        """One price for all: that of the side on which g must lie; u+ or u- where X1 is concave; or the dual.
-
-        For p in [u-, u+] p g dt is never above X1; the dual of the power balance makes most of it.
-        """
-        if self.demand - discharge >= 0:
-            choices = [(1.0, self.u)]
-        elif self.demand + self.most_hvac + charge <= 0:
-            choices = [(0.0, self.v)]
-        elif self.v > self.u:
-            choices = [(1.0, self.u), (0.0, self.v)]
-        else:
-            choices = [(1.0, float(np.clip(dual, self.v, self.u)))]
-        return [(buys, p, 0.0, p, p, p * self.demand * self.length) for buys, p in choices]
-
-    def bent(self, charge: float, discharge: float, hvac: float) -> list[tuple[float, ...]]:
-        """X1 as it is for the battery at h = ``hvac``; more of h costs at least u-, less saves at most u+."""
-        expected = self.demand + hvac
-        if expected - discharge >= 0 or self.most_hvac == 0:
-            choices = [self.u]
-        elif expected + charge <= 0:
-            choices = [self.v]
-        else:
-            choices = [self.u, self.v]
-        without = max(self.u * expected, self.v * expected)
-        return [(1.0, p, -expected, self.v, self.u, (without - p * hvac) * self.length) for p in choices]
 
 
 def _in_modes(problem: PlanningProblem, modes: BestModes) -> WrittenProblem:
