@@ -15,13 +15,14 @@ import jax
 from hemma.control.rolling import rolling_mpc
 from hemma.control.thresholds import fit_thresholds
 from hemma.data import load_austin2021
-from hemma.evaluation import EqualComfort, evaluate, measure
+from hemma.evaluation import evaluate, measure
 from hemma.forecasting.outlook import Forecaster, Outlook, hourly_means, perfect, yesterday
 from hemma.forecasting.ridge import fitted
 from hemma.home import Controller, Schedule, Trajectory, benchmark_home
 from hemma.identification import Excitation, IdentificationSettings, excite, fit
 from hemma.optimisation.joint import joint_hmpc
 from hemma.optimisation.optimum import optimum_problem
+from hemma.stages.evaluate import at_equal_comfort
 from hemma.types import Exogenous
 
 HOMES = (1, 4)
@@ -51,8 +52,8 @@ def measured(number: int, past: Exogenous, period: Exogenous) -> None:
         controller = make()
         seconds = time.monotonic() - begun
         outcome = evaluate(REAL, period, controller, jax.random.key(0))
-        budget = max(outcome.total_deviation, problem.least_deviation)
-        reference = EqualComfort(problem.solve(budget).cost, problem.solve(budget, battery=False).cost)
+        deviation = max(outcome.total_deviation, problem.least_deviation)
+        reference = at_equal_comfort(problem, deviation)
         found = measure(outcome, reference)
         share = float("nan") if found.share_of_savings is None else 100 * found.share_of_savings
         print(

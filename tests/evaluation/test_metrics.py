@@ -21,11 +21,12 @@ def outcome_of(cost, deviation=0.0):
 
 
 def test_gap_and_share_by_hand():
-    metrics = measure(outcome_of(12.0, 1.5), EqualComfort(optimum=10.0, no_battery=18.0), 3.0)
+    metrics = measure(outcome_of(12.0, 1.5), EqualComfort(optimum=10.0, no_battery=18.0, gap=0.01), 3.0)
     assert metrics.gap_to_optimum == pytest.approx(0.2)
     assert metrics.share_of_savings == pytest.approx(6 / 8)
     assert metrics.mean_temperature_deviation == metrics.total_temperature_deviation == 1.5
     assert metrics.seconds_to_train == 3.0
+    assert metrics.reference_gap == 0.01
 
 
 def test_a_negative_optimum_keeps_the_sign_of_the_gap():

@@ -24,6 +24,7 @@ METRICS = {
     "gap_to_optimum",
     "share_of_savings",
     "regret",
+    "reference_gap",
     "seconds_to_train",
 }
 LESSONS = {"HA-1", "AIRL-1-days", "HA-1-bands"}

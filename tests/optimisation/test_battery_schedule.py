@@ -14,7 +14,6 @@ from hemma.errors import HemmaError
 from hemma.home import Battery, Home, HomeState, benchmark_home
 from hemma.optimisation.battery import schedule_battery
 from hemma.optimisation.horizon import Horizon
-from hemma.optimisation.programme import SolverSettings
 from hemma.types import Exogenous
 
 
@@ -178,12 +177,6 @@ def test_an_empty_battery_is_not_below_its_limit_in_single_precision():
     schedule_battery(home, traces(4, 0), np.zeros(4), home.reset())
     with pytest.raises(HemmaError, match="initial energy"):
         schedule_battery(home, traces(4, 0), np.zeros(4), home.reset(battery_energy=np.array(0.5)))
-
-
-def test_no_time_left_is_said():
-    home, exogenous = Home(), traces(400, 5, 0.9, 0.3)
-    with pytest.raises(HemmaError, match="time_limit"):
-        schedule_battery(home, exogenous, np.ones(400), start(home), solver=SolverSettings(time_limit=0.0))
 
 
 @pytest.mark.parametrize(("planned", "carried_out"), [(0.0, None), (4.0, 5.0), (4.0, 0.0), (-1.0, None)])

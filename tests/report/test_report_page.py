@@ -156,6 +156,15 @@ def test_an_optimum_whose_bound_is_open_is_said_to_be_unproven(small, gap, is_pr
     assert ("It is not proven" in said) is not is_proven
 
 
+@pytest.mark.usefixtures("undrawn")
+def test_a_row_whose_perfect_information_is_not_proven_says_so(small):
+    folder, content = small
+    content["homes"]["home"]["methods"]["Rule"]["mean"]["reference_gap"] = 1.1e-6
+    save_results(folder, content)
+    told = {row.method: "not proven" in row.under("Gap to optimum").detail for row in results_table(folder)}
+    assert [method for method, is_told in told.items() if is_told] == ["Rule"]
+
+
 def test_order_of_the_sections(page):
     wanted = [
         "Results on austin2021-1", "The six panels", "A week of every method", "Cost against comfort",

@@ -17,10 +17,13 @@ from hemma.optimisation.affine import AffineResponse, affine_response
 from hemma.optimisation.carry_out import carry_out
 from hemma.optimisation.odd_prices import best_plan
 from hemma.optimisation.planning import PlanningProblem
+from hemma.optimisation.programme import SolverSettings
 from hemma.types import Action, Array, Exogenous
 
 DEAR = 1000.0
 """How many times its dearest energy a plan would pay for comfort, see ``comfort_price``."""
+ROUGH = SolverSettings(rounds=3)
+"""Of a plan only the first slot is carried out: at odd prices a proof is not worth more."""
 
 
 def rolling_mpc(
@@ -96,7 +99,7 @@ def comfort_price(home: Home, window: Exogenous, response: AffineResponse) -> fl
 def _plan(home: Home, window: Exogenous, response: AffineResponse, energy: float) -> tuple[float, float]:
     """e and h [kW] of the first slot of the best plan."""
     price = comfort_price(home, window, response)
-    plan = best_plan(PlanningProblem(home, window, energy, response, price), branches=False)
+    plan = best_plan(PlanningProblem(home, window, energy, response, price), ROUGH)
     return float(plan.battery_power[0]), float(plan.hvac_power[0])
 
 

@@ -21,6 +21,8 @@ class EqualComfort:
     """optimum(D), the least cost with at most that deviation [currency]."""
     no_battery: float
     """no_battery(D), the same without a battery [currency]."""
+    gap: float = 0.0
+    """The larger relative gap of the two that was not proved."""
 
 
 Value = TypeVar("Value")
@@ -45,6 +47,8 @@ class Measures(Record, Generic[Value]):
     """(no_battery(D) - cost) / (no_battery(D) - optimum(D)); None where a battery saves nothing."""
     regret: Value | None = None
     """cost - optimum(D) [currency]: what perfect information would have saved at equal comfort."""
+    reference_gap: Value | None = None
+    """Relative gap up to which optimum(D) and no_battery(D) are proved; above 1e-6 they are not proven."""
     seconds_to_train: Value | None = None
     """Wall-clock time of the training [s], compilation included; None without training."""
 
@@ -67,6 +71,7 @@ def measure(outcome: Outcome, reference: EqualComfort, seconds_to_train: float |
         gap_to_optimum=_ratio(cost - reference.optimum, abs(reference.optimum)),
         share_of_savings=_ratio(reference.no_battery - cost, reference.no_battery - reference.optimum),
         regret=regret(cost, reference.optimum),
+        reference_gap=reference.gap,
         seconds_to_train=seconds_to_train,
     )
 

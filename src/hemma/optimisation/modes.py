@@ -35,17 +35,21 @@ class SlotModes:
     hvac_price: Row
     """Of the HVAC's energy [currency/kWh]."""
     constant: Row
-    """Cost without battery and HVAC [currency]."""
+    """Cost without battery and at no HVAC power [currency]."""
+    least_hvac: Row
+    """[kW]."""
+    most_hvac: Row
+    """[kW]."""
     prices: Float[np.ndarray, "modes 3"]
     """Of the battery's energy, rising with its power [currency/kWh]."""
-    kinks: Float[np.ndarray, "2"]
+    kinks: Float[np.ndarray, "modes 2"]
     """Battery powers at which one price ends and the next begins [kW]."""
 
     def pieces(self, mode: Int[np.ndarray, "pairs"], charging: bool) -> Float[np.ndarray, "pairs 3"]:
         """How much power has each price [kW], within what may be charged or discharged."""
         low = np.zeros(len(mode)) if charging else -self.most_discharge[mode]
         high = self.most_charge[mode] if charging else np.zeros(len(mode))
-        edges = np.clip(self.kinks, low[:, None], high[:, None])
+        edges = np.clip(self.kinks[mode], low[:, None], high[:, None])
         return np.diff(np.column_stack([low, edges, high]), axis=1)
 
 
@@ -110,7 +114,7 @@ def best_modes(
         store = _stored(store.of(after), battery, modes, mode, dt)
         indoors = indoors.of(after)
         if building is not None:
-            indoors = _cooled(indoors, building, t, ranges, modes.hvac_price[mode] * dt)
+            indoors = _cooled(indoors, building, t, ranges, (modes, mode, dt))
         pairs = _Pairs(store, indoors, mode, after)
         kept = _undominated(pairs, tolerance)
         complete = complete and len(kept) <= MOST_PAIRS
@@ -142,18 +146,27 @@ def _stored(ahead: Convex, battery: Battery, modes: SlotModes, mode: np.ndarray,
     return full.convolved(slopes, lengths, np.sum(stored, axis=1), capacity)
 
 
-def _cooled(ahead: Convex, building: Building, t: int, ranges: np.ndarray, cost: np.ndarray) -> Convex:
-    """min over h of cost h + beta X3 + B(x'), as a function of x at the start of slot ``t``."""
-    a, b, most = float(building.carry[t]), float(building.gain[t]), building.max_power
+def _cooled(
+    ahead: Convex,
+    building: Building,
+    t: int,
+    ranges: Float[np.ndarray, "posts 2"],
+    now: tuple[SlotModes, Int[np.ndarray, "pairs"], float],
+) -> Convex:
+    """min over h of the cost of h + beta X3 + B(x'), as a function of x at the start of slot ``t``."""
+    modes, mode, dt = now
+    a, b = float(building.carry[t]), float(building.gain[t])
+    least, most, cost = modes.least_hvac[mode], modes.most_hvac[mode], modes.hvac_price[mode] * dt
     lowest = ranges[t + 1, 0]
     priced = ahead.bent(building.low[t] - lowest, building.high[t] - lowest, building.price)
     if b == 0:
-        return priced.raised(np.minimum(cost, 0.0) * most).stretched(1 / a)
-    reach = np.full(len(cost), abs(b) * most)
-    if b > 0:
-        priced = priced.raised(cost * most)
+        return priced.raised(np.minimum(cost * least, cost * most)).stretched(1 / a)
+    at_left = most if b > 0 else least  # h at the lower end of x = (x' - b h) / a
+    reach = abs(b) * (most - least)
+    cut = a * ranges[t, 0] - lowest + b * at_left
     length = a * float(np.ptp(ranges[t]))
-    return priced.convolved((-cost / b)[:, None], reach[:, None], reach, length).stretched(1 / a)
+    priced = priced.raised(cost * at_left)
+    return priced.convolved((-cost / b)[:, None], reach[:, None], cut, length).stretched(1 / a)
 
 
 def _undominated(pairs: _Pairs, tolerance: float) -> Int[np.ndarray, "kept"]:

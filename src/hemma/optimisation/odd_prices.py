@@ -1,4 +1,4 @@
-"""The best plan at any prices: a linear programme, or modes first where buying and selling are odd.
+"""The best plan at any prices: a linear programme, and modes first where they are odd.
 
 Where selling is dearer than buying or burning energy pays, modes (``optimisation.modes``) take the place of
 branch and bound. They prove a bound with prices of comfort and of the other slots' energy that are the duals
@@ -16,7 +16,9 @@ from hemma.optimisation.planning import Plan, PlanningProblem, WrittenProblem, w
 from hemma.optimisation.programme import EXACT, Solution, SolverSettings
 
 FORGIVEN = 0.1
-"""Share of the gap that the dynamic programme may use up."""
+"""Share of the allowed gap that the dynamic programme may use up."""
+ENOUGH = 0.5
+"""Share of the allowed gap at which the search stops."""
 
 
 @dataclass(frozen=True)
@@ -27,25 +29,19 @@ class _Duals:
     """[currency/kWh]."""
     comfort: float
     """[currency/degC]."""
+    plan: Plan
+    """The plan they come from."""
 
 
-def best_plan(problem: PlanningProblem, settings: SolverSettings = EXACT, branches: bool = True) -> Plan:
+def best_plan(problem: PlanningProblem, settings: SolverSettings = EXACT) -> Plan:
     """The plan with the least objective, and the bound that was proved within the settings' work.
-
-    What the modes leave open goes to branch and bound, unless it ``branches`` not: a plan whose first slot
-    alone is carried out is not worth it.
 
     Raises ``HemmaError`` if there is no plan.
     """
     whole = written(problem)
-    if not whole.programme.has_whole or not _separable(problem):
-        return whole.read(whole.programme.solve(settings))
-    plan = _by_modes(problem, whole, settings)
-    if settings.proves(plan.objective, plan.bound) or not branches:
-        return plan
-    branched = whole.read(whole.programme.solve(settings))
-    best = min(plan, branched, key=lambda found: found.objective)
-    return replace(best, bound=max(plan.bound, branched.bound))
+    if whole.programme.has_whole and _separable(problem):
+        return _by_modes(problem, whole, settings)
+    return whole.read(whole.programme.solve(settings))
 
 
 def _separable(problem: PlanningProblem) -> bool:
@@ -60,18 +56,18 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
     duals, bound = _duals(whole, relaxed), relaxed.bound
     tolerance = FORGIVEN * settings.relative_gap * abs(relaxed.objective) / problem.exogenous.slots
     best: Plan | None = None
-    for _ in range(settings.rounds):
-        modes = _modes(problem, duals, tolerance)
+    for count in range(settings.rounds):
+        modes = _modes(problem, duals, tolerance, splits=count % 2 == 0)
         bound = max(bound, modes.bound - duals.comfort * (problem.budget or 0.0))
         inside = _in_modes(problem, modes)
         found = inside.programme.solve(settings)
         if best is None or found.objective < best.objective:
             best = inside.read(found)
-        if settings.proves(best.objective, bound):
+        if best.objective - bound <= ENOUGH * settings.relative_gap * abs(best.objective):
             break
         duals = _duals(inside, found)
     assert best is not None
-    return replace(best, bound=min(bound, best.objective))
+    return replace(best, bound=bound)
 
 
 def _duals(within: WrittenProblem, found: Solution) -> _Duals:
@@ -80,10 +76,10 @@ def _duals(within: WrittenProblem, found: Solution) -> _Duals:
     if within.budget is not None:
         comfort = max(-float(found.row_duals[within.budget[0]]), 0.0)
     energy = found.row_duals[within.balance] / float(problem.home.slot_length)
-    return _Duals(energy, comfort)
+    return _Duals(energy, comfort, within.read(found))
 
 
-def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float) -> BestModes:
+def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float, splits: bool) -> BestModes:
     home, response = problem.home, problem.response
     building = None
     if response is not None:
@@ -97,38 +93,76 @@ def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float) -> BestMod
             price=duals.comfort,
         )
     energy = float(home.battery.min_energy) if problem.energy is None else problem.energy
-    return best_modes(home, energy, _slot_modes(problem, duals.energy), building, tolerance)
+    return best_modes(home, energy, _slot_modes(problem, duals, splits), building, tolerance)
 
 
-def _slot_modes(problem: PlanningProblem, duals: Float[np.ndarray, "slots"]) -> list[SlotModes]:
-    """The modes of every slot, each with its cost as a sum of what battery and HVAC cost by themselves.
-
-    Where X1 is concave (u- > u+) a mode has the price u+ or u- for all. Where it is convex and s is in
-    [u-, u+], X1 is at least s h plus its least over h of X1 - s h: u- e, s e or u+ e, with kinks where the
-    HVAC can no longer make g zero. The dual of the power balance is the s that makes most of it.
-    """
+def _slot_modes(problem: PlanningProblem, duals: _Duals, splits: bool) -> list[SlotModes]:
+    """The modes of every slot, each with its cost as a sum of what battery and HVAC cost by themselves."""
     home, x = problem.home, problem.exogenous
     usable = problem.energy is not None
     C, D = float(home.battery.max_charging_power) * usable, float(home.battery.max_discharging_power) * usable
     demand = np.asarray(x.load, float) - np.asarray(x.pv_generation, float)
     most = float(home.hvac.max_power)
+    expected = duals.plan.hvac_power
     if problem.response is None:
-        demand, most = demand + problem.hvac, 0.0
-    burns, dt = idling_pays(home.battery, x) & usable, float(home.slot_length)
+        demand, expected, most = demand + expected, np.zeros(x.slots), 0.0
+    burns = idling_pays(home.battery, x) & usable
     found = []
     for t in range(x.slots):
-        u, v, idle = float(x.buying_price[t]), float(x.selling_price[t]), float(demand[t])
-        if v > u:
-            sides = [(1.0, u)] * (idle + most + C > 0) + [(0.0, v)] * (idle - D < 0)
-            costs = [(buys, p, p * idle * dt, p, p, p) for buys, p in sides]
-        else:
-            s = float(np.clip(duals[t], v, u))
-            constant = u * max(idle, 0.0) + s * float(np.clip(idle, -most, 0.0)) + v * min(idle + most, 0.0)
-            costs = [(1.0, s, constant * dt, v, s, u)]
+        slot = _Slot(float(x.buying_price[t]), float(x.selling_price[t]), float(demand[t]), most)
         powers = [(1.0, C, 0.0), (0.0, 0.0, D)] if burns[t] else [(1.0, C, D)]
-        table = np.array([power + cost for power in powers for cost in costs])
-        found.append(SlotModes(*table[:, :6].T, prices=table[:, 6:], kinks=np.array([-idle - most, -idle])))
+        rows = []
+        for power in powers:
+            if slot.v > slot.u:
+                costs = slot.concave(*power[1:])
+            elif splits and slot.u < 0 and burns[t]:
+                costs = slot.split(float(np.clip(expected[t], 0.0, most)), *power[1:])
+            else:
+                costs = [slot.convex(0.0, most, float(np.clip(duals.energy[t], slot.v, slot.u)))]
+            rows += [power + cost for cost in costs]
+        table = np.array(rows)
+        table[:, 5] *= float(home.slot_length)
+        found.append(SlotModes(*table[:, :8].T, prices=table[:, 8:], kinks=-demand[t] - table[:, [7, 6]]))
     return found
+
+
+@dataclass(frozen=True)
+class _Slot:
+    """X1 / dt as the least of several costs, each a sum of one of h and one of e and never above X1.
+
+    A cost is (buys, price of h, constant, least and most h, three prices of e).
+    """
+
+    u: float
+    """u+ [currency/kWh]."""
+    v: float
+    """u- [currency/kWh]."""
+    demand: float
+    """l - p, and h where it is known [kW]."""
+    most: float
+    """h^max [kW]."""
+
+    def concave(self, charge: float, discharge: float) -> list[tuple[float, ...]]:
+        """u- > u+: one price for all, that of buying or that of selling where it can be."""
+        sides = [(1.0, self.u)] * (self.demand + self.most + charge > 0)
+        sides += [(0.0, self.v)] * (self.demand - discharge < 0)
+        return [(buys, p, p * self.demand, 0.0, self.most, p, p, p) for buys, p in sides]
+
+    def convex(self, low: float, high: float, s: float) -> tuple[float, ...]:
+        """s h + min over h in [``low``, ``high``] of X1 - s h, for s in [u-, u+]: less than X1 by nothing
+        where g = 0, or h stands at the end that s favours least."""
+        above, below = max(self.demand + low, 0.0), min(self.demand + high, 0.0)
+        middle = s * (self.demand - above - below)
+        return 1.0, s, self.u * above + middle + self.v * below, low, high, self.v, s, self.u
+
+    def split(self, hvac: float, charge: float, discharge: float) -> list[tuple[float, ...]]:
+        """X1 as it is at h = ``hvac``: less of it saves at most u+, more costs at least u-."""
+        expected = self.demand + hvac
+        if expected - discharge >= 0 or hvac >= self.most:
+            return [self.convex(0.0, self.most, self.u)]
+        if expected + charge <= 0 or hvac <= 0:
+            return [self.convex(0.0, self.most, self.v)]
+        return [self.convex(0.0, hvac, self.u), self.convex(hvac, self.most, self.v)]
 
 
 def _in_modes(problem: PlanningProblem, modes: BestModes) -> WrittenProblem:

@@ -59,16 +59,15 @@ class Evaluator:
         file = _slug(label) + (".csv" if played.seed is None else f"-{played.seed}.csv")
         schedule = self.store.schedule(file)
         write_schedule(self.store.folder / schedule, self.case.parts.test.time_stamps(), played.outcome)
-        metrics = measure(played.outcome, self._at_equal_comfort(played.outcome), played.seconds_to_train)
+        reference = at_equal_comfort(self.problem, played.outcome.total_deviation)
+        metrics = measure(played.outcome, reference, played.seconds_to_train)
         return Run(**metrics.model_dump(), seed=played.seed, schedule=schedule, curve=played.curve)
 
-    def _at_equal_comfort(self, outcome: Outcome) -> EqualComfort:
-        """Perfect information with the deviation that the run itself caused."""
-        deviation = outcome.total_deviation
-        return EqualComfort(
-            optimum=self.problem.solve(deviation).cost,
-            no_battery=self.problem.solve(deviation, battery=False).cost,
-        )
+
+def at_equal_comfort(problem: OptimumProblem, deviation: float) -> EqualComfort:
+    """Perfect information with the ``deviation`` [degC in total] that a run itself caused."""
+    optimum, no_battery = problem.solve(deviation), problem.solve(deviation, battery=False)
+    return EqualComfort(optimum.cost, no_battery.cost, max(optimum.gap, no_battery.gap))
 
 
 def plain_optimum(evaluator: Evaluator) -> Optimum:

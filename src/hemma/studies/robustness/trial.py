@@ -11,7 +11,7 @@ import numpy as np
 
 from hemma.control.rolling import rolling_mpc
 from hemma.control.sensors import SafetyLayer, WatchedStep, watched_replay
-from hemma.evaluation import EqualComfort, Outcome, measure
+from hemma.evaluation import Outcome, measure
 from hemma.evaluation.replay import outcome_of
 from hemma.forecasting.outlook import Outlook
 from hemma.home import Controller
@@ -27,6 +27,7 @@ from hemma.results.store import Store
 from hemma.results.summary import intervals, means, summarised
 from hemma.rl.policies.scaling import NOTHING, Context
 from hemma.stages.demonstrate import Expert
+from hemma.stages.evaluate import at_equal_comfort
 from hemma.stages.folds import outlook_of
 from hemma.stages.sight import informed
 from hemma.stages.train import Trained
@@ -170,8 +171,7 @@ def _judged(
     seed: int | None, outcome: Outcome, problem: OptimumProblem, counts: tuple[int, int] | None
 ) -> FaultRun:
     """Its measures; perfect information knows the changed home, and what will disturb it."""
-    budget = outcome.total_deviation
-    reference = EqualComfort(problem.solve(budget).cost, problem.solve(budget, battery=False).cost)
+    reference = at_equal_comfort(problem, outcome.total_deviation)
     return FaultRun(
         **measure(outcome, reference).model_dump(),
         max_temperature_deviation=float(np.max(outcome.temperature_deviation)),

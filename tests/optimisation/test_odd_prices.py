@@ -1,0 +1,115 @@
+"""Selling above buying and negative prices: proven months, and SciPy's optimum on short ones."""
+
+import dataclasses
+
+import jax
+import numpy as np
+import pytest
+from test_optimum import TwoNodes, dense, traces
+
+from hemma.control.rolling import rolling_mpc
+from hemma.home import Battery, Home, Hvac, benchmark_home
+from hemma.optimisation.battery import schedule_battery
+from hemma.optimisation.convex import Convex
+from hemma.optimisation.optimum import optimum_problem
+from hemma.optimisation.programme import EXACT
+from hemma.types import Exogenous
+
+
+def priced(exogenous: Exogenous, kind: str) -> Exogenous:
+    u = exogenous.buying_price
+    odd = np.arange(exogenous.slots) % 3 == 0
+    flat = np.ones(exogenous.slots)
+    buy, sell = {
+        "flat, sold dearer": (0.2 * flat, 0.4 * flat),
+        "sold dearer": (u, 1.5 * u),
+        "fixed feed-in": (u, 0.12 * flat),
+        "negative": (-u, -0.9 * u),
+        "negative, flat": (-0.1 * flat, -0.1 * flat),
+        "negative, sold dearer still": (-u, -1.2 * u),
+        "some negative": (np.where(odd, -u, u), np.where(odd, -0.9 * u, 0.9 * u)),
+        "some negative, fees": (np.where(odd, -u, u) + 0.02, np.where(odd, -u, u) - 0.02),
+        "some sold dearer": (u, np.where(odd, 1.4, 0.8) * u),
+    }[kind]
+    return dataclasses.replace(exogenous, buying_price=buy, selling_price=sell)
+
+
+PROVEN = (
+    "flat, sold dearer", "sold dearer", "fixed feed-in", "negative", "negative, flat", "some negative",
+    "some negative, fees", "some sold dearer",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", PROVEN)
+@pytest.mark.parametrize("heats", [False, True])
+def test_a_short_period_costs_what_scipy_finds_with_binaries_everywhere(kind, heats):
+    home = Home(hvac=Hvac(heats=heats), battery=Battery(charging_efficiency=0.9))
+    exogenous = priced(traces(10, 3, 8.0 if heats else 32.0), kind)
+    problem = optimum_problem(home, exogenous)
+    for extra in (0.0, 2.5):
+        found = problem.solve(problem.least_deviation + extra)
+        expected = dense(home, exogenous, problem.least_deviation + extra, True)
+        assert found.cost == pytest.approx(expected, abs=1e-5)
+        assert found.bound <= expected + 1e-6
+    idle = dataclasses.replace(home, battery=Battery(max_charging_power=0.0, max_discharging_power=0.0))
+    without = problem.solve(battery=False)
+    assert without.cost == pytest.approx(dense(idle, exogenous, problem.least_deviation, True), abs=1e-5)
+
+
+@pytest.mark.parametrize("kind", PROVEN)
+def test_a_month_is_proven(kind):
+    found = optimum_problem(Home(), priced(traces(744, 1), kind)).solve()
+    assert found.gap <= 1e-6
+    assert found.bound <= found.cost + 1e-7 * abs(found.cost)  # rounding does not grow over the slots
+
+
+@pytest.mark.parametrize("kind", [*PROVEN, "negative, sold dearer still"])
+def test_a_month_of_the_battery_alone_is_proven(kind):
+    home, exogenous = Home(), priced(traces(744, 1), kind)
+    with jax.enable_x64(True):
+        initial = home.reset()
+    assert schedule_battery(home, exogenous, np.ones(744), initial).gap <= 1e-6
+
+
+def test_quarter_hours_are_proven():
+    found = optimum_problem(benchmark_home(0.25), priced(traces(192, 1), "sold dearer")).solve()
+    assert found.gap <= 1e-6
+
+
+def test_what_is_not_proven_is_said_and_holds():
+    home, exogenous = Home(), priced(traces(10, 6, 33.0), "negative, sold dearer still")
+    problem = optimum_problem(home, exogenous)
+    found = problem.solve(solver=dataclasses.replace(EXACT, rounds=1))
+    expected = dense(home, exogenous, problem.least_deviation, True)
+    assert found.bound <= expected + 1e-6 <= found.cost + 2e-6
+    assert found.gap == pytest.approx((found.cost - found.bound) / abs(found.cost))
+
+
+def test_a_building_with_two_temperatures_is_left_to_branch_and_bound():
+    found = optimum_problem(
+        Home(thermal_model=TwoNodes()), priced(traces(12, 4, 36.0), "sold dearer")
+    ).solve()
+    assert found.gap <= 1e-6
+
+
+def test_a_rolling_planner_that_sees_all_finds_the_optimum():
+    home, exogenous = Home(), priced(traces(24, 5), "flat, sold dearer")
+    slots = np.minimum(np.arange(24)[:, None] + np.arange(24)[None, :], 23)
+    forecasts = jax.tree.map(lambda x: np.asarray(x)[slots], exogenous)
+    path = rolling_mpc(home, home, exogenous, forecasts)
+    best = optimum_problem(home, exogenous).solve()
+    assert float(path.temperature_deviation) == pytest.approx(best.deviation, abs=1e-6)
+    assert float(path.energy_cost) == pytest.approx(best.cost, rel=1e-6)
+
+
+def test_convolution_shares_the_variable_in_the_cheapest_way():
+    first = Convex(np.array([1.0]), np.array([[-1.0, 2.0]]), np.array([[1.0, 2.0]]))
+    both = first.convolved(np.array([[3.0, 0.5]]), np.array([[1.0, 1.0]]), np.array([0.5]), 4.0)
+    points = np.linspace(0.0, 4.0, 9)
+    second = Convex(np.zeros(1), np.array([[0.5, 3.0]]), np.array([[1.0, 1.0]]))
+    share = np.linspace(0.0, 2.0, 2001)
+    for point, value in zip(points, both.at(points)[0], strict=True):
+        rest = point + 0.5 - share
+        inside = (rest >= -1e-9) & (rest <= 3 + 1e-9)
+        costs = second.at(share[inside])[0] + first.at(np.clip(rest[inside], 0, 3))[0]
+        assert value == pytest.approx(costs.min(), abs=1e-9)
