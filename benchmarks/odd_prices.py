@@ -56,7 +56,8 @@ def measured(name: str, exogenous: Exogenous) -> None:
     path = rolling_mpc(HOME, HOME, exogenous, known)
     seconds = time.process_time() - begun
     print(
-        f"{name:28} {best.cost:11.4f} {best.gap:14.1e} {solved:8.1f} {float(path.energy_cost):9.4f} {seconds:8.1f}",
+        f"{name:28} {best.cost:11.4f} {best.gap:14.1e} {solved:8.1f} "
+        f"{float(path.energy_cost):9.4f} {seconds:8.1f}",
         flush=True,
     )
 

@@ -181,7 +181,7 @@ def thermal_dynamics(
         programme.add_rows(-v * earlier, -v * earlier, *terms, *temperature_before(-v))
 
 
-def comfort_budget(programme: Programme, columns: ThermalColumns, budget: float) -> Block:
+def comfort_budget(programme: Programme, columns: ThermalColumns, budget: float) -> Int[np.ndarray, "1"]:
     """Sum over the slots of excess + lack <= D [degC]: the bill at equal comfort. Gives its row."""
     both = np.concatenate([columns.excess, columns.lack])
     return programme.add_rows(0.0, budget, (both[None, :], 1.0))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hemma.home import Home
 from hemma.optimisation.affine import AffineResponse
@@ -67,7 +67,7 @@ class WrittenProblem:
     store: BatteryColumns | None
     balance: Block
     """Rows of the power balance."""
-    budget: Block | None
+    budget: Int[np.ndarray, "1"] | None
     """The row of the comfort budget."""
 
     def read(self, found: Solution) -> Plan:
