@@ -22,7 +22,7 @@ from hemma.types import Action, Array, Exogenous
 
 DEAR = 1000.0
 """How many times its dearest energy a plan would pay for comfort, see ``comfort_price``."""
-ROUGH = SolverSettings(rounds=3)
+ROUGH = SolverSettings(rounds=3, most_branched=10)
 """Of a plan only the first slot is carried out: at odd prices a proof is not worth more."""
 
 

@@ -39,9 +39,14 @@ def best_plan(problem: PlanningProblem, settings: SolverSettings = EXACT) -> Pla
     Raises ``HemmaError`` if there is no plan.
     """
     whole = written(problem)
-    if whole.programme.has_whole and _separable(problem):
-        return _by_modes(problem, whole, settings)
-    return whole.read(whole.programme.solve(settings))
+    if not whole.programme.whole_numbers or not _separable(problem):
+        return whole.read(whole.programme.solve(settings))
+    plan = _by_modes(problem, whole, settings)
+    if _proves(settings, plan) or whole.programme.whole_numbers > settings.most_branched:
+        return plan
+    branched = whole.read(whole.programme.solve(settings))
+    best = min(plan, branched, key=lambda found: found.objective)
+    return replace(best, bound=max(plan.bound, branched.bound))
 
 
 def _separable(problem: PlanningProblem) -> bool:
@@ -63,11 +68,16 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
         found = inside.programme.solve(settings)
         if best is None or found.objective < best.objective:
             best = inside.read(found)
-        if best.objective - bound <= ENOUGH * settings.relative_gap * abs(best.objective):
+        best = replace(best, bound=bound)
+        if _proves(settings, best):
             break
         duals = _duals(inside, found)
     assert best is not None
-    return replace(best, bound=bound)
+    return best
+
+
+def _proves(settings: SolverSettings, plan: Plan) -> bool:
+    return plan.objective - plan.bound <= ENOUGH * settings.relative_gap * abs(plan.objective)
 
 
 def _duals(within: WrittenProblem, found: Solution) -> _Duals:

@@ -26,10 +26,11 @@ class SolverSettings:
     relative_gap: float = 1e-6
     """Largest (objective - bound) / |objective| at which it stops."""
     max_nodes: int = 200
-    """Nodes after which branch and bound gives up, with what it has proved by then. Only a building whose
-    memory answers to the HVAC needs it."""
+    """Nodes after which branch and bound gives up, with what it has proved by then."""
     rounds: int = 6
     """How often modes are sought with better duals, where prices are odd (``optimisation.odd_prices``)."""
+    most_branched: int = 300
+    """Odd slots up to which branch and bound tries to close the gap that modes have left."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,9 @@ class Programme:
         return np.arange(self._column_count - entries, self._column_count)
 
     @property
-    def has_whole(self) -> bool:
-        """Whether there are whole numbers, so that branch and bound is needed."""
-        return any(block[:, 3].any() for block in self._columns)
+    def whole_numbers(self) -> int:
+        """How many there are; with none it is a linear programme."""
+        return sum(int(np.count_nonzero(block[:, 3])) for block in self._columns)
 
     def relaxed(self) -> "Programme":
         """The same without whole numbers."""

@@ -135,6 +135,7 @@ LIMITS: dict[type, dict[str, Limits]] = {
         "relative_gap": Limits(0, 0.1, "a fraction", _percent),
         "max_nodes": Limits(1, 10**6, "a number of nodes"),
         "rounds": Limits(1, 100, "a number of rounds"),
+        "most_branched": Limits(0, 10**6, "a number of slots"),
     },
     HierarchySettings: {"seed": Limits(0, 2**31 - 1, "a seed")},
     MaxEntSettings: {"windows": Limits(1, 10_000, "windows")},
