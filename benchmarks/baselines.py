@@ -12,13 +12,13 @@ from dataclasses import replace
 import equinox as eqx
 import jax
 
-from hemma.control.rolling import rolling_mpc
+from hemma.control.rolling import RollingPlanner
 from hemma.control.thresholds import fit_thresholds
 from hemma.data import load_austin2021
 from hemma.evaluation import evaluate, measure
 from hemma.forecasting.outlook import Forecaster, Outlook, hourly_means, perfect, yesterday
 from hemma.forecasting.ridge import fitted
-from hemma.home import Controller, Schedule, Trajectory, benchmark_home
+from hemma.home import AbstractController, Schedule, benchmark_home
 from hemma.identification import Excitation, IdentificationSettings, excite, fit
 from hemma.optimisation.joint import joint_hmpc
 from hemma.optimisation.optimum import optimum_problem
@@ -47,7 +47,7 @@ def measured(number: int, past: Exogenous, period: Exogenous) -> None:
     believed = eqx.tree_at(lambda home: home.thermal_model, REAL, network)
     problem = optimum_problem(REAL, period)
 
-    def line(name: str, make: Callable[[], Controller]) -> None:
+    def line(name: str, make: Callable[[], AbstractController]) -> None:
         begun = time.monotonic()
         controller = make()
         seconds = time.monotonic() - begun
@@ -62,9 +62,9 @@ def measured(number: int, past: Exogenous, period: Exogenous) -> None:
             flush=True,
         )
 
-    def mpc(forecaster: Forecaster, horizon: float = 36.0) -> Callable[[], Controller]:
+    def mpc(forecaster: Forecaster, horizon: float = 36.0) -> Callable[[], AbstractController]:
         outlook = Outlook(past, period, float(REAL.slot_length), horizon)
-        return lambda: _schedule(rolling_mpc(believed, REAL, period, forecaster(outlook)))
+        return lambda: RollingPlanner(believed, forecaster(outlook))
 
     line("thresholds", lambda: fit_thresholds(believed, past))
     line("thresholds, hindsight", lambda: fit_thresholds(believed, period))
@@ -75,17 +75,13 @@ def measured(number: int, past: Exogenous, period: Exogenous) -> None:
     line("MPC forecast, prices known", mpc(_prices_known))
     line("MPC perfect", mpc(perfect))
     line("MPC perfect, 24 h", mpc(perfect, 24.0))
-    line("HMPC joint", lambda: _schedule(joint_hmpc(believed, REAL, period)))
+    line("HMPC joint", lambda: Schedule(joint_hmpc(believed, REAL, period).steps.action))
 
 
 def _prices_known(outlook: Outlook) -> Exogenous:
     """As in a day-ahead market, the rest fitted."""
     known = perfect(outlook)
     return replace(fitted(outlook), buying_price=known.buying_price, selling_price=known.selling_price)
-
-
-def _schedule(path: Trajectory) -> Controller:
-    return Schedule(path.steps.action)
 
 
 if __name__ == "__main__":

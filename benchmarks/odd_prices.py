@@ -11,9 +11,9 @@ from dataclasses import replace
 import jax
 import numpy as np
 
-from hemma.control.rolling import rolling_mpc
+from hemma.control.rolling import RollingPlanner
 from hemma.data import load_austin2021
-from hemma.home import benchmark_home
+from hemma.home import benchmark_home, replay_in_double
 from hemma.optimisation.optimum import optimum_problem
 from hemma.types import Exogenous
 
@@ -53,7 +53,7 @@ def measured(name: str, exogenous: Exogenous) -> None:
     ahead = np.arange(exogenous.slots)[:, None] + np.arange(HORIZON)[None, :]
     known = jax.tree.map(lambda v: np.asarray(v)[np.minimum(ahead, exogenous.slots - 1)], exogenous)
     begun = time.process_time()
-    path = rolling_mpc(HOME, HOME, exogenous, known)
+    path = replay_in_double(HOME, exogenous, RollingPlanner(HOME, known))
     seconds = time.process_time() - begun
     print(
         f"{name:28} {best.cost:11.4f} {best.gap:14.1e} {solved:8.1f} "

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_sensors import Held, observation, week
+from test_sensors import Held, observation, watched, week
 
 from hemma.control.adaptation import IN_TIME, LATE, CorrectedThermalModel, corrected, unadapted
-from hemma.control.rolling import rolling_mpc
-from hemma.control.sensors import SafetyLayer, faultless, watched_replay
+from hemma.control.estimation import StateEstimator
+from hemma.control.rolling import RollingPlanner
+from hemma.control.sensors import faultless
 from hemma.forecasting.outlook import Outlook, perfect
-from hemma.home import ExplicitThermalModel, Home, Hvac, benchmark_home
+from hemma.home import ExplicitThermalModel, Home, Hvac, benchmark_home, replay_in_double
 from hemma.home.comfort import observed_comfort_power
 from hemma.home.precision import in_double
 from hemma.types import Exogenous
@@ -32,16 +33,14 @@ def slot(outdoor, hour=12.0):
 
 def run(home, adapts, readings=None, believed=HOME, days=6):
     exogenous = week(24 * days)
-    with jax.enable_x64(True):
-        safety = SafetyLayer(believed, 1.0, adapts)
-        readings = faultless(exogenous) if readings is None else readings(faultless(exogenous))
-        inputs = in_double((home, exogenous, Held(believed), readings, safety, jax.random.key(0)))
-        return jax.tree.map(np.asarray, watched_replay(*inputs))
+    readings = faultless(exogenous) if readings is None else readings(faultless(exogenous))
+    controller = watched(Held(believed), readings, adapts, believed)
+    return replay_in_double(home, exogenous, controller, disturbances=readings.disturbance).steps
 
 
 def deviation(steps):
     """Mean X3 once a day has passed [degC]."""
-    return float(np.mean(steps.step.costs.temperature_deviation[24:]))
+    return float(np.mean(steps.costs.temperature_deviation[24:]))
 
 
 def test_the_uncertainty_beforehand_is_that_of_the_constants():
@@ -81,7 +80,7 @@ def test_a_reading_that_is_no_number_teaches_nothing():
 
 def test_where_nothing_is_wrong_it_changes_nothing():
     usual, adapting = (run(HOME, adapts) for adapts in (False, True))
-    np.testing.assert_allclose(adapting.step.action.hvac_power, usual.step.action.hvac_power, atol=1e-9)
+    np.testing.assert_allclose(adapting.action.hvac_power, usual.action.hvac_power, atol=1e-9)
 
 
 @pytest.mark.parametrize("share", [1.3, 0.7])
@@ -92,7 +91,7 @@ def test_a_building_that_leaks_more_or_less_is_known_after_a_day(share):
     if share > 1:
         assert deviation(usual) > 0.2
     else:  # it cools too much: the bill suffers, not the comfort
-        assert np.sum(adapting.step.action.hvac_power) < 0.97 * np.sum(usual.step.action.hvac_power)
+        assert np.sum(adapting.action.hvac_power) < 0.97 * np.sum(usual.action.hvac_power)
 
 
 def lagging(weather):
@@ -174,9 +173,10 @@ def test_every_home_inside_a_controller_is_corrected():
 def test_the_rolling_planner_adapts_as_well():
     period = jax.tree.map(np.asarray, week(72))
     forecasts = perfect(Outlook(period.window(0, 24), period, 1.0, 12.0))
+    planner = RollingPlanner(HOME, forecasts)
     usual, adapting = (
-        rolling_mpc(HOME, LEAKY, period, forecasts, adapts=adapts).steps.costs.temperature_deviation[24:]
+        replay_in_double(LEAKY, period, StateEstimator(planner, HOME, adapts)).steps.costs
         for adapts in (False, True)
     )
-    assert np.mean(usual) > 0.2
-    assert np.mean(adapting) < 0.005
+    assert np.mean(usual.temperature_deviation[24:]) > 0.2
+    assert np.mean(adapting.temperature_deviation[24:]) < 0.005

@@ -1,18 +1,16 @@
 """Import at one price, export at another one every hour: what planners and thresholds make of it."""
 
-import jax
 import numpy as np
 import pytest
 
 from hemma.control.comfort import ComfortHold
-from hemma.control.rolling import rolling_mpc
+from hemma.control.rolling import RollingPlanner
 from hemma.control.thresholds import fit_thresholds
 from hemma.forecasting.combined import MeanForecast, RefittedForecast
 from hemma.forecasting.outlook import Outlook, hourly_means, yesterday
 from hemma.forecasting.ridge import fitted
 from hemma.forecasting.shape import ShapeForecast
-from hemma.home import Home, replay
-from hemma.home.precision import in_double
+from hemma.home import Home, replay_in_double
 from hemma.optimisation.battery import schedule_battery
 from hemma.optimisation.optimum import optimum_problem
 from small_worlds import cut, hourly_export
@@ -29,10 +27,7 @@ def cost(path) -> float:
 
 
 def run(controller):
-    with jax.enable_x64(True):
-        home, period, controller = in_double((HOME, PERIOD, controller))
-        path = replay(home, period, controller, home.reset(), jax.random.key(0))
-        return jax.tree.map(np.asarray, path)
+    return replay_in_double(HOME, PERIOD, controller)
 
 
 def test_perfect_information():
@@ -51,7 +46,7 @@ def test_perfect_information():
     ids=["yesterday", "hourly means", "five places", "shape", "mean of both"],
 )
 def test_a_planner_with_any_forecast_comes_near_it(forecaster, expected):
-    path = rolling_mpc(HOME, HOME, PERIOD, forecaster(Outlook(PAST, PERIOD, 1.0, 36.0)))
+    path = run(RollingPlanner(HOME, forecaster(Outlook(PAST, PERIOD, 1.0, 36.0))))
     assert cost(path) == pytest.approx(expected, abs=2e-3)
 
 

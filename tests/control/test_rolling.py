@@ -9,12 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hemma.control.rolling import comfort_price, rolling_mpc
-from hemma.control.sensors import faultless
+from hemma.control.rolling import RollingPlanner, comfort_price
 from hemma.errors import HemmaError
 from hemma.forecasting.outlook import Forecaster, Outlook, hourly_means, perfect, yesterday
 from hemma.forecasting.ridge import fitted
-from hemma.home import Battery, ExplicitThermalModel, Home, Hvac, Trajectory, benchmark_home
+from hemma.home import Battery, ExplicitThermalModel, Home, Hvac, Trajectory, benchmark_home, replay_in_double
 from hemma.optimisation.affine import affine_response
 from hemma.optimisation.joint import joint_hmpc
 from hemma.optimisation.optimum import optimum_problem
@@ -29,6 +28,13 @@ KINDS = {
     "saturated": (SATURATED, 33.0, 0.0),
     "negative prices": (HOME, 31.0, 0.15),
 }
+
+
+def planned(
+    believed: Home, home: Home, period: Exogenous, forecasts: Exogenous, kicks: np.ndarray | None = None
+) -> Trajectory:
+    """What a rolling planner does in ``home``, which ``kicks`` [degC] disturb."""
+    return replay_in_double(home, period, RollingPlanner(believed, forecasts), disturbances=kicks)
 
 
 def costs(path: Trajectory) -> tuple[float, float]:
@@ -46,7 +52,7 @@ def whole(period: Exogenous, home: Home, horizon: float = 36.0, past: Exogenous 
 def test_with_the_whole_period_foreseen_it_is_the_optimum(kind):
     home, mean, negative = KINDS[kind]
     period = noisy(2, 1, mean=mean, negative_share=negative)
-    cost, deviation = costs(rolling_mpc(home, home, period, perfect(whole(period, home, 48.0))))
+    cost, deviation = costs(planned(home, home, period, perfect(whole(period, home, 48.0))))
     problem = optimum_problem(home, period)
     best = problem.solve()
     assert deviation == pytest.approx(problem.least_deviation, abs=1e-5)
@@ -56,7 +62,7 @@ def test_with_the_whole_period_foreseen_it_is_the_optimum(kind):
 def test_quarters_of_an_hour_and_a_horizon_of_a_day_come_near():
     home = benchmark_home(0.25)
     period = noisy(2, 2, 0.25)
-    cost, deviation = costs(rolling_mpc(home, home, period, perfect(whole(period, home, 24.0))))
+    cost, deviation = costs(planned(home, home, period, perfect(whole(period, home, 24.0))))
     problem = optimum_problem(home, period)
     best, without = problem.solve(deviation + 1e-6), problem.solve(deviation + 1e-6, battery=False)
     assert without.cost - cost > 0.98 * (without.cost - best.cost)
@@ -70,7 +76,7 @@ def test_no_forecast_beats_perfect_information_and_all_actions_are_feasible(
 ):
     home = Home(hvac=Hvac(heats=heats))
     past, period = cut(noisy(7, seed, mean=10.0 if heats else 31.0, negative_share=negative), 6 * 24)
-    path = rolling_mpc(home, home, period, forecaster(Outlook(past, period, 1.0, 24.0)))
+    path = planned(home, home, period, forecaster(Outlook(past, period, 1.0, 24.0)))
     cost, deviation = costs(path)
     problem = optimum_problem(home, period)
     assert cost >= problem.solve(max(deviation, problem.least_deviation)).bound - 1e-6
@@ -87,7 +93,7 @@ def test_what_happens_later_changes_no_earlier_action(forecaster, seed, slot):
 
     def actions(exogenous: Exogenous) -> np.ndarray:
         past, period = cut(exogenous, 5 * 24)
-        path = rolling_mpc(HOME, HOME, period, forecaster(Outlook(past, period, 1.0, 12.0)))
+        path = planned(HOME, HOME, period, forecaster(Outlook(past, period, 1.0, 12.0)))
         return np.stack([path.steps.action.battery_power, path.steps.action.hvac_power])
 
     as_it_was, otherwise = actions(exogenous), actions(changed_after(exogenous, 5 * 24 + slot))
@@ -96,7 +102,7 @@ def test_what_happens_later_changes_no_earlier_action(forecaster, seed, slot):
 
 def run(forecaster: Forecaster, exogenous: Exogenous, past_days: int = 5) -> Trajectory:
     past, period = cut(exogenous, past_days * 24)
-    return rolling_mpc(HOME, HOME, period, forecaster(Outlook(past, period, 1.0)))
+    return planned(HOME, HOME, period, forecaster(Outlook(past, period, 1.0)))
 
 
 def test_in_a_periodic_world_every_forecast_is_perfect():
@@ -127,7 +133,7 @@ def test_one_price_and_a_poor_selling_price_store_the_surplus():
 def test_a_battery_without_capacity_is_no_trouble():
     home = replace(HOME, battery=Battery(max_energy=0.0, min_energy=0.0, initial_energy=0.0))
     period = noisy(1, 3)
-    path = rolling_mpc(home, home, period, perfect(whole(period, home)))
+    path = planned(home, home, period, perfect(whole(period, home)))
     assert np.all(path.steps.action.battery_power == 0)
 
 
@@ -136,8 +142,7 @@ def test_the_measured_temperature_corrects_a_wrong_model_and_a_disturbance():
     period = noisy(3, 4, mean=33.0)
     forecasts = perfect(whole(period, HOME, 12.0))
     kicks = np.random.default_rng(0).normal(0, 0.3, period.slots)
-    disturbed = eqx.tree_at(lambda readings: readings.disturbance, faultless(period), kicks)
-    quiet, kicked = (rolling_mpc(wrong, HOME, period, forecasts, readings) for readings in (None, disturbed))
+    quiet, kicked = (planned(wrong, HOME, period, forecasts, disturbed) for disturbed in (None, kicks))
     assert 0.0 < np.max(quiet.steps.costs.temperature_deviation) < 1.0
     assert np.all(np.isfinite(kicked.steps.state.indoor_temperature))
     assert np.mean(kicked.steps.costs.temperature_deviation) < 0.6
@@ -161,9 +166,9 @@ def test_the_comfort_price_stands_far_above_every_price_in_any_currency():
 def test_forecasts_of_another_period_are_refused():
     period = noisy(2, 6)
     with pytest.raises(HemmaError, match="shape"):
-        rolling_mpc(HOME, HOME, period, perfect(whole(period.window(0, 30), HOME)))
+        planned(HOME, HOME, period, perfect(whole(period.window(0, 30), HOME)))
     with pytest.raises(HemmaError, match="shape"):
-        rolling_mpc(HOME, HOME, period, period)
+        planned(HOME, HOME, period, period)
 
 
 def test_the_joint_plan_through_the_true_model_is_the_optimum():

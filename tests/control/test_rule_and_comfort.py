@@ -40,7 +40,7 @@ def weather(outdoor: np.ndarray) -> Exogenous:
     ],
 )
 def test_rule_is_a_thermostat_with_hysteresis(heats, temperature, expected):
-    action = Rule(Hvac(heats=heats), ComfortBand())(observation(temperature), jax.random.key(0))
+    action, _ = Rule(Hvac(heats=heats), ComfortBand())(observation(temperature), (), jax.random.key(0))
     assert float(action.hvac_power) == pytest.approx(expected)
     assert float(action.battery_power) == 0.0
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from hemma.control.comfort import ComfortHold
 from hemma.control.thresholds import PriceRule, Thresholds, fit_thresholds
-from hemma.home import Battery, Controller, Home, Hvac, Trajectory, benchmark_home, replay
+from hemma.home import AbstractController, Battery, Home, Hvac, Trajectory, benchmark_home, replay
 from hemma.home.precision import in_double
 from hemma.home.selling import SellingLine, fit_selling
 from hemma.types import Exogenous
@@ -22,7 +22,7 @@ HOME = Home()
 compiled_replay = eqx.filter_jit(replay)
 
 
-def run(home: Home, exogenous: Exogenous, controller: Controller) -> Trajectory:
+def run(home: Home, exogenous: Exogenous, controller: AbstractController) -> Trajectory:
     with jax.enable_x64(True):
         inside = in_double((home, exogenous, controller))
         path = compiled_replay(*inside, home.reset(), jax.random.key(0))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hemma.evaluation import EqualComfort, Outcome, evaluate, measure
-from hemma.home import Home
+from hemma.home import AbstractController, Home
 from hemma.results.schedules import write_exogenous, write_schedule
 from hemma.types import Action, Exogenous
 
@@ -50,12 +50,13 @@ def test_a_useless_battery_gives_no_share(no_battery):
     assert metrics.gap_to_optimum == pytest.approx(0.2)
 
 
-class Wobbling:
+class Wobbling(AbstractController):
     """Charges and cools by the clock, beyond the limits now and then."""
 
-    def __call__(self, observation, key):
+    def __call__(self, observation, memory, key):
         turn = jnp.sin(observation.slot * 0.9)
-        return Action(battery_power=4.0 * turn, hvac_power=jnp.maximum(2.5 * jnp.cos(observation.slot), 0.0))
+        h = jnp.maximum(2.5 * jnp.cos(observation.slot), 0.0)
+        return Action(battery_power=4.0 * turn, hvac_power=h), memory
 
 
 def summer(slots):

@@ -1,30 +1,28 @@
 """Replay: double precision, no reset, no disturbance, one compilation, seeds beside each other."""
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from hemma.evaluation import evaluate, evaluate_stacked
-from hemma.home import Home, Hvac
+from hemma.home import AbstractController, Home, Hvac
 from hemma.types import Action, Array, Exogenous
 
 traces = 0
 
 
-class Proportional(eqx.Module):
+class Proportional(AbstractController):
     """Battery power proportional to the price, HVAC to the temperature; counts its compilations."""
 
     gain: Array
 
-    def __call__(self, observation, key):
+    def __call__(self, observation, memory, key):
         global traces
         traces += 1
-        return Action(
-            battery_power=self.gain[0] * (observation.buying_price - 0.1),
-            hvac_power=self.gain[1] * (observation.indoor_temperature - 22.0),
-        )
+        e = self.gain[0] * (observation.buying_price - 0.1)
+        h = self.gain[1] * (observation.indoor_temperature - 22.0)
+        return Action(battery_power=e, hvac_power=h), memory
 
 
 def period(slots=60, seed=0):

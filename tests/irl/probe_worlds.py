@@ -110,7 +110,7 @@ def shown_by(policy, scaler, days=5):
     """What the policy's mean action does on those days, as demonstrations."""
     home = Home()
     controller = PolicyController(policy, scaler, home)
-    return demonstrate(home, traces(days), lambda o: controller(o, jax.random.key(0)))
+    return demonstrate(home, traces(days), lambda o: controller(o, (), jax.random.key(0))[0])
 
 
 def transitions(samples, seed=0):

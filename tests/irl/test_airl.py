@@ -194,7 +194,7 @@ def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw(head):
     trained = training.train(runs, learner)
     controller = jax.tree.map(lambda x: x[0], training.controllers(trained, runs, learner))
     unseen = demonstrate(Home(), traces(4, seed=9), price_rule)
-    acted = demonstrate(Home(), traces(4, seed=9), lambda o: controller(o, jax.random.key(0)))
+    acted = demonstrate(Home(), traces(4, seed=9), lambda o: controller(o, (), jax.random.key(0))[0])
     same = jnp.abs(acted.actions[:, 0] - unseen.actions[:, 0]) < 0.75
     assert float(same.mean()) > 0.8
     assert float(jnp.abs(acted.actions[:, 1] - unseen.actions[:, 1]).mean()) < 0.15

@@ -244,7 +244,7 @@ def imitators():
 def acted(imitators, run, seed):
     """What the mean action of one of them does on four days."""
     controller = jax.tree.map(lambda x: x[run], imitators[0])
-    return demonstrate(Home(), traces(4, seed), lambda o: controller(o, jax.random.key(0)))
+    return demonstrate(Home(), traces(4, seed), lambda o: controller(o, (), jax.random.key(0))[0])
 
 
 def test_one_step_an_idle_expert_teaches_rest(imitators):

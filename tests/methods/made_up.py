@@ -2,27 +2,27 @@
 
 from dataclasses import dataclass, field
 
-import equinox as eqx
 import jax.numpy as jnp
 
 from hemma.control.comfort import ComfortHold
+from hemma.home import AbstractController
 from hemma.irl.cloning import BehaviourCloning, CloningSettings
 from hemma.methods.imitation import AbstractImitator
 from hemma.methods.method import AbstractControl, Group
 from hemma.types import Action
 
 
-class Clockwork(eqx.Module):
+class Clockwork(AbstractController):
     """Charges at night and discharges in the evening, whatever the price."""
 
     comfort: ComfortHold
 
-    def __call__(self, observation, key):
+    def __call__(self, observation, memory, key):
         """Action of the observed slot [kW]."""
-        held = self.comfort(observation, key)
+        held, memory = self.comfort(observation, memory, key)
         hour = observation.hour_of_day
         power = jnp.where(hour < 5, 1.0, jnp.where((hour >= 17) & (hour < 21), -1.0, 0.0))
-        return Action(battery_power=power, hvac_power=held.hvac_power)
+        return Action(battery_power=power, hvac_power=held.hvac_power), memory
 
 
 @dataclass(frozen=True, kw_only=True)

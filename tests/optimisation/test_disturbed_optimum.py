@@ -1,16 +1,12 @@
 """Perfect information that knows what will disturb the building."""
 
-from dataclasses import replace
-
-import jax
 import numpy as np
 import pytest
 
 from hemma.control.comfort import ComfortHold
-from hemma.control.sensors import SafetyLayer, faultless, watched_replay
+from hemma.control.safety import SafetyLayer
 from hemma.evaluation.replay import outcome_of
-from hemma.home import benchmark_home
-from hemma.home.precision import in_double
+from hemma.home import benchmark_home, replay_in_double
 from hemma.optimisation.optimum import optimum_problem
 from small_worlds import noisy
 
@@ -41,10 +37,8 @@ def test_without_disturbances_it_is_the_problem_it_was():
 def test_no_controller_beats_it_in_the_disturbed_home(seed):
     world, epsilon = noisy(3, seed), kicks(72, seed + 10)
     problem = optimum_problem(HOME, world, disturbances=epsilon)
-    with jax.enable_x64(True):
-        readings = replace(faultless(world), disturbance=epsilon)
-        inputs = in_double((HOME, world, ComfortHold(HOME), readings, SafetyLayer(HOME), jax.random.key(0)))
-        outcome = outcome_of(watched_replay(*inputs).step)
+    guarded = SafetyLayer(ComfortHold(HOME), HOME)
+    outcome = outcome_of(replay_in_double(HOME, world, guarded, disturbances=epsilon).steps)
     assert outcome.total_deviation >= problem.least_deviation - 1e-6
     for battery in (True, False):
         best = problem.solve(outcome.total_deviation, battery=battery)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from test_optimum import TwoNodes, dense, traces
 
-from hemma.control.rolling import rolling_mpc
-from hemma.home import Battery, Home, Hvac, benchmark_home
+from hemma.control.rolling import RollingPlanner
+from hemma.home import Battery, Home, Hvac, benchmark_home, replay_in_double
 from hemma.optimisation.battery import schedule_battery
 from hemma.optimisation.convex import Convex
 from hemma.optimisation.optimum import optimum_problem
@@ -101,7 +101,7 @@ def test_a_rolling_planner_that_sees_all_finds_the_optimum():
     home, exogenous = Home(), priced(traces(24, 5), "flat, sold dearer")
     slots = np.minimum(np.arange(24)[:, None] + np.arange(24)[None, :], 23)
     forecasts = jax.tree.map(lambda x: np.asarray(x)[slots], exogenous)
-    path = rolling_mpc(home, home, exogenous, forecasts)
+    path = replay_in_double(home, exogenous, RollingPlanner(home, forecasts))
     best = optimum_problem(home, exogenous).solve()
     assert float(path.temperature_deviation) == pytest.approx(best.deviation, abs=1e-6)
     assert float(path.energy_cost) == pytest.approx(best.cost, rel=1e-6)

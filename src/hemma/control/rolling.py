@@ -1,24 +1,17 @@
 """Rolling-horizon optimisation (MPC): plan battery and HVAC, do the first slot, measure, plan again."""
 
-from dataclasses import dataclass
-
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Float, Int
 
-from hemma.control.adaptation import Adaptation, corrected, unadapted
-from hemma.control.sensors import Measured, Readings, faultless, first_measured, measure_state, taught
 from hemma.errors import HemmaError
-from hemma.home import Home, HomeState, Trajectory
-from hemma.home.precision import in_double, in_numpy
+from hemma.home import AbstractController, Home, Memory
+from hemma.home.precision import in_numpy
 from hemma.optimisation.affine import AffineResponse, affine_response
-from hemma.optimisation.carry_out import carry_out
 from hemma.optimisation.odd_prices import best_plan
 from hemma.optimisation.planning import PlanningProblem
 from hemma.optimisation.programme import SolverSettings
-from hemma.types import Action, Array, Exogenous
+from hemma.types import Action, Array, Exogenous, Observation
 
 DEAR = 1000.0
 """How many times its dearest energy a plan would pay for comfort, see ``comfort_price``."""
@@ -26,57 +19,49 @@ ROUGH = SolverSettings(rounds=3, most_branched=10)
 """Of a plan only the first slot is carried out: at odd prices a proof is not worth more."""
 
 
-def rolling_mpc(
-    planning_home: Home,
-    real_home: Home,
-    exogenous: Exogenous,
-    forecasts: Exogenous,
-    readings: Readings | None = None,
-    adapts: bool = False,
-) -> Trajectory:
-    """Run ``real_home`` from its start through ``exogenous``, planning every slot through ``planning_home``.
+class RollingPlanner(AbstractController):
+    """Plans battery and HVAC of the next slots together through ``home``, and does the first of them.
 
-    Row t of ``forecasts`` (slots, horizon) is what slot t believes of the slots t, t + 1, ...; column 0 is
-    taken as it stands, so it should be the truth (``forecasting.outlook`` makes it so). A plan minimises the
-    sum of X1 + X2 + beta X3 over its slots, subject to (3) to (8), from the measured temperature and energy;
-    beta is ``comfort_price``. No plan reaches beyond the end of the period, and energy left at the end of a
-    plan has no value, as in objective (1).
+    A plan minimises the sum of X1 + X2 + beta X3 over its slots, subject to (3) to (8), from the observed
+    temperature and energy; beta is ``comfort_price``. No plan reaches beyond the last row of ``forecasts``,
+    and energy left at the end of a plan has no value, as in objective (1).
 
-    The planning home's thermal model must be affine in the HVAC power; another raises ``HemmaError``.
-    ``readings`` say what is measured of temperature and energy, and what disturbs the real home; without
-    them everything is as it is. What they make of ``exogenous`` is the affair of whoever forecasts. If it
-    ``adapts``, it plans through a building that is corrected by what was measured before
-    (``control.adaptation``). All results are NumPy float64.
+    The home's thermal model must be affine in the HVAC power; another raises ``HemmaError``, as do forecasts
+    without a row for the observed slot.
     """
-    horizon = _checked_horizon(exogenous, forecasts)
-    readings = faultless(exogenous) if readings is None else readings
-    believed, beliefs = in_numpy((planning_home, forecasts))
-    with jax.enable_x64(True):
-        planning, ahead = in_double((planning_home, forecasts))
-        real = _RealHome(*in_double((real_home, exogenous, readings)))
-        initial = state = real.home.reset()
-        last = first_measured(state)
-        adaptation = unadapted(planning) if adapts else None
-    actions = np.empty((exogenous.slots, 2))
-    for slot in range(exogenous.slots):
-        planned = min(horizon, exogenous.slots - slot)
+
+    home: Home
+    """As it is believed to be."""
+    forecasts: Exogenous
+    """(slots, horizon): row t is what slot t believes of the slots t, t + 1, ...; column 0 is taken as it
+    stands, so it should be what was read (``forecasting.outlook`` makes it so)."""
+
+    @property
+    def is_traceable(self) -> bool:
+        """It calls a solver."""
+        return False
+
+    def __call__(self, observation: Observation, memory: Memory, key: Array) -> tuple[Action, Memory]:
+        """The first slot of the best plan."""
+        slot = int(observation.slot)
+        rows, horizon = self._shape(slot)
+        planned = min(horizon, rows - slot)
+        row = jax.tree.map(lambda x: np.asarray(x)[slot], self.forecasts)
         with jax.enable_x64(True):
-            index = jnp.asarray(slot)
-            before, last = last, real.measured(state, index, last)
-            now, temperature = planning, last.temperature
-            if adaptation is not None:
-                if slot > 0:
-                    power = jnp.asarray(actions[slot - 1, 1])
-                    measured = (before, last)
-                    adaptation = _learned(adaptation, planning, real.readings, index - 1, power, measured)
-                now = corrected(planning, adaptation)
-                temperature = _present(adaptation, planning, real.readings, index, temperature)
-            thermal = now.thermal_model.initial(temperature)
-            response = _first(affine_response(now, _row(ahead, index), thermal), planned)
-            window = jax.tree.map(lambda x, slot=slot, planned=planned: x[slot, :planned], beliefs)
-            actions[slot] = _plan(believed, window, response, float(last.energy))
-            state = real.after(state, index, actions[slot])
-    return carry_out(real_home, exogenous, Action(*actions.T), initial, readings.disturbance)
+            thermal = self.home.thermal_model.initial(jnp.asarray(observation.indoor_temperature, float))
+        response = _first(affine_response(self.home, row, thermal), planned)
+        believed, window = in_numpy((self.home, row.window(0, planned)))
+        e, h = _plan(believed, window, response, float(observation.battery_energy))
+        return Action(jnp.asarray(e), jnp.asarray(h)), memory
+
+    def _shape(self, slot: int) -> tuple[int, int]:
+        shape = np.shape(self.forecasts.pv_generation)
+        if len(shape) != 2 or shape[0] <= slot or shape[1] < 1:
+            raise HemmaError(
+                f"MPC: expected forecasts of shape (slots, horizon) with a row for slot {slot}, got {shape}; "
+                "make them for this period with hemma.forecasting.outlook"
+            )
+        return shape
 
 
 def comfort_price(home: Home, window: Exogenous, response: AffineResponse) -> float:
@@ -106,69 +91,3 @@ def _plan(home: Home, window: Exogenous, response: AffineResponse, energy: float
 def _first(response: AffineResponse, slots: int) -> AffineResponse:
     """The first ``slots`` slots alone. All are linearised at full length, so that one compilation does."""
     return AffineResponse(response.free[:slots], response.carry[:slots], response.gain[:slots])
-
-
-def _checked_horizon(exogenous: Exogenous, forecasts: Exogenous) -> int:
-    shape = np.shape(forecasts.pv_generation)
-    if len(shape) != 2 or shape[0] != exogenous.slots or shape[1] < 1:
-        raise HemmaError(
-            f"MPC: expected forecasts of shape (slots, horizon) with {exogenous.slots} slots, got {shape}; "
-            "make them for this period with hemma.forecasting.outlook"
-        )
-    return shape[1]
-
-
-@dataclass(frozen=True)
-class _RealHome:
-    """The home that carries the first slot of every plan out; all numbers are JAX arrays of float64."""
-
-    home: Home
-    exogenous: Exogenous
-    readings: Readings
-
-    def measured(self, state: HomeState, slot: Int[Array, ""], last: Measured) -> Measured:
-        """What is read of ``state`` at the start of ``slot``."""
-        return _measured(self.home, state, self.readings, slot, last)
-
-    def after(self, state: HomeState, slot: Int[Array, ""], action: Float[np.ndarray, "2"]) -> HomeState:
-        """State at the end of ``slot`` under ``action`` = (e, h) [kW]."""
-        driven = (self.exogenous, self.readings.disturbance)
-        return _stepped(self.home, driven, slot, state, Action(*jnp.asarray(action)))
-
-
-_measured = eqx.filter_jit(measure_state)
-
-
-@eqx.filter_jit
-def _learned(
-    adaptation: Adaptation,
-    believed: Home,
-    readings: Readings,
-    slot: Int[Array, ""],
-    hvac_power: Array,
-    measured: tuple[Measured, Measured],
-) -> Adaptation:
-    """After ``slot``, which began and ended with what was ``measured``."""
-    read = jax.tree.map(lambda x: x[slot], readings.exogenous)
-    return adaptation.learned(believed, taught(*measured), read, hvac_power)
-
-
-@eqx.filter_jit
-def _present(
-    adaptation: Adaptation, believed: Home, readings: Readings, slot: Int[Array, ""], reading: Array
-) -> Array:
-    read = jax.tree.map(lambda x: x[slot], readings.exogenous)
-    return adaptation.temperature(believed, reading, read)
-
-
-@eqx.filter_jit
-def _stepped(
-    home: Home, driven: tuple[Exogenous, Array], slot: Int[Array, ""], state: HomeState, action: Action
-) -> HomeState:
-    now, disturbance = jax.tree.map(lambda x: x[slot], driven)
-    return home.step(state, now, action, disturbance).state
-
-
-@jax.jit
-def _row(exogenous: Exogenous, slot: Int[Array, ""]) -> Exogenous:
-    return jax.tree.map(lambda x: x[slot], exogenous)

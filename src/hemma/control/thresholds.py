@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hemma.control.comfort import ComfortHold
-from hemma.home import Battery, Home, replay, transaction_cost
+from hemma.home import AbstractController, Battery, Home, Memory, replay, transaction_cost
 from hemma.home.comfort import observed_comfort_power
 from hemma.home.precision import in_double
 from hemma.home.selling import SellingLine, fit_selling
@@ -59,22 +59,22 @@ class PriceRule(eqx.Module):
         return jnp.where((u < self.charge_below) | (v > self.discharge_above), wholly, stored + used)
 
 
-class Thresholds(eqx.Module):
+class Thresholds(AbstractController):
     """The battery by ``rule``, the HVAC at the least power that holds comfort by the home's thermal model."""
 
     home: Home
     """The home as it is believed to be: with the identified thermal model, nothing knows the true one."""
     rule: PriceRule
 
-    def __call__(self, observation: Observation, key: Array) -> Action:
-        """Action of the observed slot [kW]; no randomness."""
+    def __call__(self, observation: Observation, memory: Memory, key: Array) -> tuple[Action, Memory]:
+        """Action of the observed slot [kW]; no randomness, nothing to remember."""
         o, home = observation, self.home
         h = observed_comfort_power(home, o)
         prices = (o.buying_price, o.selling_price)
         e = self.rule.battery_power(
             home.battery, o.battery_energy, o.load + h - o.pv_generation, prices, home.slot_length
         )
-        return Action(battery_power=e, hvac_power=h)
+        return Action(battery_power=e, hvac_power=h), memory
 
 
 def fit_thresholds(home: Home, exogenous: Exogenous) -> Thresholds:

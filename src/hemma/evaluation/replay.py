@@ -8,9 +8,8 @@ import jax
 import numpy as np
 from jaxtyping import Float
 
-from hemma.home import Controller, Home, Step, Trajectory, replay
-from hemma.home.precision import in_double
-from hemma.types import Array, Exogenous, Scalar
+from hemma.home import AbstractController, Home, Step, replay_in_double
+from hemma.types import Array, Exogenous
 
 
 @dataclass(frozen=True)
@@ -46,21 +45,28 @@ class Outcome:
 
 
 def evaluate(
-    home: Home, exogenous: Exogenous, controller: Controller, key: Array, disturbance_deviation: float = 0.0
+    home: Home,
+    exogenous: Exogenous,
+    controller: AbstractController,
+    key: Array,
+    disturbance_deviation: float = 0.0,
 ) -> Outcome:
     """Run ``controller`` from the home's initial state through ``exogenous`` without any reset.
 
     Everything is cast to float64, whatever precision the controller was trained in. The thermal
     disturbance of the home is replaced by one of ``disturbance_deviation`` [degC]: none unless asked for,
-    because perfect information knows none either. Compiled once for each kind of controller.
+    because perfect information knows none either.
     """
-    with jax.enable_x64(True):
-        inputs = in_double((home, exogenous, controller, key, disturbance_deviation))
-        return outcome_of(_replayed(*inputs).steps)
+    home = eqx.tree_at(lambda h: h.disturbance_deviation, home, disturbance_deviation)
+    return outcome_of(replay_in_double(home, exogenous, controller, key=key).steps)
 
 
 def evaluate_stacked(
-    home: Home, exogenous: Exogenous, controllers: Controller, keys: Array, disturbance_deviation: float = 0.0
+    home: Home,
+    exogenous: Exogenous,
+    controllers: AbstractController,
+    keys: Array,
+    disturbance_deviation: float = 0.0,
 ) -> tuple[Outcome, ...]:
     """``evaluate`` for one controller a seed: every array of ``controllers`` and ``keys`` is stacked along
     its first axis. They run one after the other, so that no outcome depends on how many there are."""
@@ -70,16 +76,6 @@ def evaluate_stacked(
         return evaluate(home, exogenous, controller, keys[run], disturbance_deviation)
 
     return tuple(evaluated(run) for run in range(len(keys)))
-
-
-def _run(
-    home: Home, exogenous: Exogenous, controller: Controller, key: Array, deviation: Scalar
-) -> Trajectory:
-    home = eqx.tree_at(lambda h: h.disturbance_deviation, home, deviation)
-    return replay(home, exogenous, controller, home.reset(), key)
-
-
-_replayed = eqx.filter_jit(_run)
 
 
 def outcome_of(steps: Step) -> Outcome:

@@ -36,8 +36,14 @@ def comfort_power(home: Home, thermal: ThermalState, exogenous: Exogenous) -> Ar
 
 def observed_comfort_power(home: Home, observation: Observation) -> Array:
     """``comfort_power`` from what a controller sees: the building is taken as just measured."""
+    thermal = home.thermal_model.initial(observation.indoor_temperature)
+    return comfort_power(home, thermal, observed_exogenous(observation))
+
+
+def observed_exogenous(observation: Observation) -> Exogenous:
+    """What a controller sees that the home does not decide."""
     o = observation
-    seen = Exogenous(
+    return Exogenous(
         pv_generation=o.pv_generation,
         load=o.load,
         outdoor_temperature=o.outdoor_temperature,
@@ -45,4 +51,3 @@ def observed_comfort_power(home: Home, observation: Observation) -> Array:
         selling_price=o.selling_price,
         hour_of_day=o.hour_of_day,
     )
-    return comfort_power(home, home.thermal_model.initial(o.indoor_temperature), seen)

@@ -7,7 +7,7 @@ from functools import partial
 import jax
 
 from hemma.evaluation import evaluate
-from hemma.home import Controller
+from hemma.home import AbstractController
 from hemma.methods.hindsight import DNLP
 from hemma.methods.method import AbstractControl, Known
 from hemma.methods.planners import AbstractPlanner
@@ -50,7 +50,7 @@ def measured_with_true_model(planner: AbstractPlanner, evaluator: Evaluator, kno
     """A planner through the thermal model of the simulated home: nobody could, it splits regret."""
     label = f"{planner.name} with the true model"
     mark = fingerprint("true model", _mark(planner, known))
-    act = _Act(label, mark, partial(planner.planned, known, evaluator.case.home), True)
+    act = _Act(label, mark, partial(planner.planner, known, evaluator.case.home, known.outlook), True)
     return _judged(evaluator, act, planner.seconds_to_fit(known))
 
 
@@ -60,7 +60,7 @@ class _Act:
 
     label: str
     mark: str
-    controller: Callable[[], Controller]
+    controller: Callable[[], AbstractController]
     is_told: bool
     """Whether it takes so long that its progress is told."""
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from hemma.forecasting.observations import PAPER, ObservationModel
 from hemma.forecasting.outlook import Outlook
-from hemma.home import Controller
+from hemma.home import AbstractController
 from hemma.methods.looks import UNKNOWN, Look
 from hemma.optimisation.optimum import OptimumProblem
 from hemma.results.store import Store
@@ -84,7 +84,7 @@ class AbstractControl(AbstractMethod):
     """A method that is not trained."""
 
     @abstractmethod
-    def controller(self, known: Known) -> Controller:
+    def controller(self, known: Known) -> AbstractController:
         """What acts in the period, fitted to the past if to anything."""
 
     def facts(self, known: Known) -> tuple:

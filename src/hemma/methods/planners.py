@@ -3,11 +3,11 @@
 from abc import abstractmethod
 from dataclasses import dataclass
 
-from hemma.control.rolling import rolling_mpc
-from hemma.forecasting.outlook import Forecaster, hourly_means, perfect, yesterday
+from hemma.control.rolling import RollingPlanner
+from hemma.forecasting.outlook import Forecaster, Outlook, hourly_means, perfect, yesterday
 from hemma.forecasting.published import PublishedPrices
 from hemma.forecasting.ridge import fitted, needed_past
-from hemma.home import Home, Schedule
+from hemma.home import Home
 from hemma.methods.looks import DASHED, DOTTED, GREY, MIXED, SKY, Look
 from hemma.methods.method import AbstractControl, Group, Known
 
@@ -22,15 +22,13 @@ class AbstractPlanner(AbstractControl):
     def forecaster(self, known: Known) -> Forecaster:
         """What it believes of the hours to come."""
 
-    def controller(self, known: Known) -> Schedule:
-        """What it does in the period, planning through the building as it was identified."""
-        return self.planned(known, known.expert.planning_home)
+    def controller(self, known: Known) -> RollingPlanner:
+        """Through the building as it was identified."""
+        return self.planner(known, known.expert.planning_home, known.outlook)
 
-    def planned(self, known: Known, planning_home: Home) -> Schedule:
-        """The same through any building."""
-        home, outlook = known.expert.case.home, known.outlook
-        path = rolling_mpc(planning_home, home, outlook.period, self.forecaster(known)(outlook))
-        return Schedule(path.steps.action)
+    def planner(self, known: Known, planning_home: Home, outlook: Outlook) -> RollingPlanner:
+        """Through any building, in any period."""
+        return RollingPlanner(planning_home, self.forecaster(known)(outlook))
 
 
 @dataclass(frozen=True, kw_only=True)

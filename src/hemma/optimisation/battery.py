@@ -15,7 +15,7 @@ from hemma.optimisation.programme import EXACT, SolverSettings
 from hemma.types import Action, Exogenous
 
 ZERO = 1e-9
-"""Costs nearer to zero than this [currency] are no denominator."""
+"""Differences of cost up to this [currency] are rounding; costs nearer to zero are no denominator."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,8 @@ def schedule_battery(
         plan = best_plan(PlanningProblem(home, part, energy, hvac_power[ahead]), solver)
         done = window.stop - window.start
         powers.append(plan.battery_power[:done])
-        energy = float(
-            np.clip(plan.battery_energy[done - 1], home.battery.min_energy, home.battery.max_energy)
-        )
+        last = plan.battery_energy[done - 1]
+        energy = float(np.clip(last, home.battery.min_energy, home.battery.max_energy))
         plans.append(plan)
     if len(plans) > 1:
         whole = PlanningProblem(home, exogenous, float(initial.battery_energy), hvac_power)
@@ -77,5 +76,5 @@ def schedule_battery(
 
 
 def relative_gap(cost: float, bound: float) -> float:
-    """(cost - bound) / |cost|, absolute where the cost is zero; rounding below zero counts as zero."""
-    return max(cost - bound, 0.0) / max(abs(cost), ZERO)
+    """(cost - bound) / |cost|; what is within rounding of zero counts as zero."""
+    return 0.0 if cost - bound <= ZERO else (cost - bound) / max(abs(cost), ZERO)

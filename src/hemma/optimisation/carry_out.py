@@ -1,14 +1,10 @@
 """Carry a plan out on a home, so that what is reported is what the home does."""
 
-import equinox as eqx
-import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
-from hemma.home import Battery, Home, HomeState, Step, Trajectory, observe
-from hemma.home.precision import in_double
-from hemma.types import Action, Array, Exogenous, Observation
+from hemma.home import Battery, Home, HomeState, Schedule, Trajectory, replay_in_double
+from hemma.types import Action, Array, Exogenous
 
 
 def carry_out(
@@ -22,27 +18,8 @@ def carry_out(
 
     ``disturbances`` are epsilon_t [degC], zero unless given.
     """
-    if disturbances is None:
-        disturbances = np.zeros(exogenous.slots)
-    with jax.enable_x64(True):
-        inputs = in_double((home, exogenous, actions, initial, disturbances))
-        return jax.tree.map(np.asarray, _carried_out(*inputs))
-
-
-@eqx.filter_jit
-def _carried_out(
-    home: Home, exogenous: Exogenous, actions: Action, initial: HomeState, disturbances: Array
-) -> Trajectory:
-    def slot(
-        state: HomeState, inputs: tuple[Exogenous, Action, Array]
-    ) -> tuple[HomeState, tuple[Observation, Step]]:
-        now, action, disturbance = inputs
-        step = home.step(state, now, action, disturbance)
-        return step.state, (observe(state, now), step)
-
-    start = eqx.tree_at(lambda s: s.slot, initial, jnp.zeros((), int))
-    _, (observations, steps) = jax.lax.scan(slot, start, (exogenous, actions, disturbances))
-    return Trajectory(observations=observations, steps=steps)
+    known = np.zeros(exogenous.slots) if disturbances is None else disturbances
+    return replay_in_double(home, exogenous, Schedule(actions), initial, disturbances=known)
 
 
 def net_power(battery: Battery, charge: np.ndarray, discharge: np.ndarray) -> np.ndarray:

@@ -42,7 +42,7 @@ class Convex:
     def kinks(self) -> Float[np.ndarray, "points"]:
         """Every point at which one of them may bend, and both ends."""
         ends = np.cumsum(self.lengths, axis=1)
-        return np.unique(np.round(np.concatenate([[0.0], ends.ravel()]), 9))
+        return np.unique(np.round(np.concatenate([[0.0], ends.ravel()]), 11))
 
     def convolved(self, slopes: Pieces, lengths: Pieces, cut: Row, length: float) -> "Convex":
         """Least sum with a second function over all ways to share the variable, on a shorter interval.

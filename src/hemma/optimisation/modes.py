@@ -172,7 +172,7 @@ def _cooled(
 def _undominated(pairs: _Pairs, tolerance: float) -> Int[np.ndarray, "kept"]:
     """Pairs that no other kept one undercuts everywhere, up to the tolerance; the cheapest come first."""
     values = [function.at(function.kinks()) for function in (pairs.store, pairs.building)]
-    over = sum(np.min(value[:, None] - value[None, :], axis=2) for value in values)
+    over = np.sum([np.min(value[:, None] - value[None, :], axis=2) for value in values], axis=0)
     dominates = (over >= -tolerance).T
     kept: list[int] = []
     alive = np.ones(len(dominates), bool)

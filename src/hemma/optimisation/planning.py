@@ -50,8 +50,8 @@ class Plan:
     """e [kW]."""
     hvac_power: Float[np.ndarray, "slots"]
     """h [kW]."""
-    battery_energy: Float[np.ndarray, "slots"] | None
-    """E at the end of each slot [kWh]; None without battery."""
+    battery_energy: Float[np.ndarray, "slots"]
+    """E at the end of each slot [kWh]; NaN without battery."""
     objective: float
     bound: float
     """Proven: no plan has a smaller objective."""
@@ -73,7 +73,8 @@ class WrittenProblem:
     def read(self, found: Solution) -> Plan:
         """The plan that the columns' values describe."""
         problem, x = self.problem, found.values
-        e, energy = np.zeros(problem.exogenous.slots), None
+        slots = problem.exogenous.slots
+        e, energy = np.zeros(slots), np.full(slots, np.nan)
         if self.store is not None:
             e = net_power(problem.home.battery, x[self.store.charge], x[self.store.discharge])
             energy = x[self.store.energy]

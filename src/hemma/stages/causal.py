@@ -5,7 +5,8 @@ import time
 import jax.numpy as jnp
 import numpy as np
 
-from hemma.control.rolling import rolling_mpc
+from hemma.control.rolling import RollingPlanner
+from hemma.home import replay_in_double
 from hemma.optimisation.demonstrations import states_and_actions
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
@@ -45,7 +46,8 @@ def _shown(store: Store, expert: Expert, sight: Sight, days: int) -> dict:
     store.progress.started(STAGE, 1)
     known = case.first_days(case.training_days)
     ahead = sight.observer.training_forecast(known, period.slots, dt, case.experiment.forecast_horizon)
-    path = rolling_mpc(expert.planning_home, case.home, period, ahead)
+    planner, quiet = RollingPlanner(expert.planning_home, ahead), np.zeros(period.slots)
+    path = replay_in_double(case.home, period, planner, disturbances=quiet)
     states, actions = states_and_actions(path)
     deviation = float(np.mean(case.home.comfort.deviation(states[1:, INDOOR])))
     message = f"{days} days, {len(states) - 1} transitions, mean deviation {deviation:.3f} °C"

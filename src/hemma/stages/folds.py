@@ -6,10 +6,9 @@ from itertools import pairwise
 import jax
 import numpy as np
 
-from hemma.control.rolling import rolling_mpc
+from hemma.control.rolling import RollingPlanner
 from hemma.evaluation import Outcome, evaluate
 from hemma.forecasting.outlook import DAY, Forecaster, Outlook
-from hemma.home import Schedule
 from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
 
@@ -36,6 +35,5 @@ def training_folds(case: Case) -> Sequence[Outlook]:
 
 def planned(expert: Expert, fold: Outlook, forecaster: Forecaster) -> Outcome:
     """What the rolling planner does in a fold, through the identified network, with this forecast."""
-    home = expert.case.home
-    path = rolling_mpc(expert.planning_home, home, fold.period, forecaster(fold))
-    return evaluate(home, fold.period, Schedule(path.steps.action), jax.random.key(0))
+    planner = RollingPlanner(expert.planning_home, forecaster(fold))
+    return evaluate(expert.case.home, fold.period, planner, jax.random.key(0))

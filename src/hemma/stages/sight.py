@@ -8,7 +8,7 @@ from jaxtyping import Int
 
 from hemma.forecasting.observations import PAPER, ObservationModel, Observer
 from hemma.forecasting.outlook import Outlook, yesterday
-from hemma.home import Controller
+from hemma.home import AbstractController
 from hemma.home.selling import fit_selling
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
@@ -88,7 +88,7 @@ def sight_of(model: ObservationModel, expert: Expert, store: Store, forecasts: b
     return Sight(case, observer, (chosen.name, settings))
 
 
-def informed(controllers: PolicyController, context: Context) -> Controller:
+def informed(controllers: PolicyController, context: Context) -> AbstractController:
     """Stacked controllers that see their context while they act."""
     if context is NOTHING:
         return controllers

@@ -6,7 +6,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Float
 
-from hemma.home import Home
+from hemma.home import AbstractController, Home, Memory
 from hemma.rl.policies.actions import to_power
 from hemma.rl.policies.network import Network
 from hemma.rl.policies.scaling import Context, StateScaler
@@ -69,7 +69,7 @@ def log_density(
     return -0.5 * jnp.sum(distance**2, axis=-1) - jnp.sum(jnp.log(deviation * jnp.sqrt(2 * jnp.pi)))
 
 
-class PolicyController(eqx.Module):
+class PolicyController(AbstractController):
     """A trained policy as a controller: the mean action, no randomness.
 
     Called as it is, it sees the paper's state, and a selling price that it does not tell. A policy that
@@ -81,25 +81,25 @@ class PolicyController(eqx.Module):
     planning_home: Home
     """The home as far as it is known, to turn fractions into powers: its limits, and a thermal model."""
 
-    def __call__(self, observation: Observation, key: Array) -> Action:
+    def __call__(self, observation: Observation, memory: Memory, key: Array) -> tuple[Action, Memory]:
         """The action (e, h) [kW]."""
-        return self.act(observation, self.scaler.observed(observation))
+        return self.act(observation, self.scaler.observed(observation)), memory
 
     def act(self, observation: Observation, features: Float[Array, "features"]) -> Action:
         """The action (e, h) [kW] when all that the policy sees is ``features``."""
         return to_power(self.planning_home, observation, self.policy.mean(features))
 
 
-class InformedController(eqx.Module):
+class InformedController(AbstractController):
     """A trained policy that sees more than the paper's state, with what there is to see in a period."""
 
     controller: PolicyController
     context: Context
     """One row a slot of the period that is replayed."""
 
-    def __call__(self, observation: Observation, key: Array) -> Action:
+    def __call__(self, observation: Observation, memory: Memory, key: Array) -> tuple[Action, Memory]:
         """The action (e, h) [kW]."""
         scaler = self.controller.scaler
         seen = scaler.context(self.context.at(observation.slot))
         features = jnp.concatenate([scaler.observed(observation), seen])
-        return self.controller.act(observation, features)
+        return self.controller.act(observation, features), memory

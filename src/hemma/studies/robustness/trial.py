@@ -1,21 +1,20 @@
 """The table again under faults: what was trained under good conditions meets bad ones."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import equinox as eqx
 import jax
 import numpy as np
 
-from hemma.control.rolling import rolling_mpc
-from hemma.control.sensors import SafetyLayer, WatchedStep, watched_replay
-from hemma.evaluation import Outcome, measure
+from hemma.control.estimation import StateEstimator
+from hemma.control.safety import Interventions, SafetyLayer
+from hemma.control.sensors import Sensors
+from hemma.evaluation import measure
 from hemma.evaluation.replay import outcome_of
 from hemma.forecasting.outlook import Outlook
-from hemma.home import Controller
-from hemma.home.precision import in_double, in_numpy
+from hemma.home import AbstractController, Trajectory, replay_in_double
 from hemma.methods import controls
 from hemma.methods.measured import runnable
 from hemma.methods.method import AbstractControl, Known
@@ -104,17 +103,22 @@ class Trial:
         problem = optimum_problem(now.home, now.exogenous, disturbances=now.readings.disturbance)
         runs: dict[str, list[FaultRun]] = {}
         for method in self._controls:
-            if isinstance(method, AbstractPlanner):
-                runs[method.name] = [self._planned(method, now, problem)]
+            if isinstance(method, AbstractPlanner):  # plans within the limits: nothing to guard
+                planner = method.planner(self._known, self.expert.planning_home, self._read(now))
+                runs[method.name] = [_judged(None, self._run(planner, now), problem)]
             else:
                 controller = method.controller(self._known)
-                runs[method.name] = [self._watched(None, controller, now, problem)]
+                runs[method.name] = [self._guarded(None, controller, now, problem)]
         for method, one in self.trained.items():
             controllers = informed(one.controllers, self._seen(one, now))
             for seed in range(min(one.runs, self._settings.runs)):
                 controller = jax.tree.map(lambda x, seed=seed: x[seed], controllers)
-                runs.setdefault(method, []).append(self._watched(seed, controller, now, problem))
+                runs.setdefault(method, []).append(self._guarded(seed, controller, now, problem))
         return runs
+
+    def _read(self, now: Scene) -> Outlook:
+        """The test period as it is read, and the past."""
+        return replace(outlook_of(self.expert.case), period=now.readings.exogenous)
 
     def _seen(self, one: Trained, now: Scene) -> Context:
         """What a learned method sees besides the paper's state, as it is read."""
@@ -131,53 +135,33 @@ class Trial:
     def _controls(self) -> list[AbstractControl]:
         return runnable(tuple(method for method in controls() if method.is_causal), self._known)
 
-    def _watched(
-        self, seed: int | None, controller: Controller, now: Scene, problem: OptimumProblem
+    def _guarded(
+        self, seed: int | None, controller: AbstractController, now: Scene, problem: OptimumProblem
     ) -> FaultRun:
-        safety = SafetyLayer(self.expert.planning_home, self._settings.margin, self._settings.adapts)
-        with jax.enable_x64(True):
-            inputs = in_double((now.home, now.exogenous, controller, now.readings, safety, jax.random.key(0)))
-            watched = in_numpy(_replayed(*inputs))
-        changes = watched.interventions
-        counts = (int(np.sum(np.asarray(changes.limited))), int(np.sum(np.asarray(changes.comfort))))
-        return _judged(seed, outcome_of(watched.step), problem, counts)
+        """Behind a safety layer."""
+        safety = SafetyLayer(controller, self.expert.planning_home, self._settings.margin)
+        path = self._run(safety, now)
+        return _judged(seed, path, problem, path.memory.inner.inner.own)
 
-    def _planned(self, planner: AbstractPlanner, now: Scene, problem: OptimumProblem) -> FaultRun:
-        case = self.expert.case
-        outlook = Outlook(
-            case.training,
-            now.readings.exogenous,
-            float(case.home.slot_length),
-            case.experiment.forecast_horizon,
-        )
-        forecasts = planner.forecaster(self._known)(outlook)
-        path = rolling_mpc(
-            self.expert.planning_home,
-            now.home,
-            now.exogenous,
-            forecasts,
-            now.readings,
-            adapts=self._settings.adapts,
-        )
-        return _judged(None, outcome_of(path.steps), problem, None)
-
-
-@eqx.filter_jit
-def _replayed(home, exogenous, controller, readings, safety, key) -> WatchedStep:
-    return watched_replay(home, exogenous, controller, readings, safety, key)
+    def _run(self, controller: AbstractController, now: Scene) -> Trajectory:
+        """By what the sensors say."""
+        estimator = StateEstimator(controller, self.expert.planning_home, self._settings.adapts)
+        sensors = Sensors(estimator, now.readings, now.home.battery)
+        return replay_in_double(now.home, now.exogenous, sensors, disturbances=now.readings.disturbance)
 
 
 def _judged(
-    seed: int | None, outcome: Outcome, problem: OptimumProblem, counts: tuple[int, int] | None
+    seed: int | None, path: Trajectory, problem: OptimumProblem, changed: Interventions | None = None
 ) -> FaultRun:
     """Its measures; perfect information knows the changed home, and what will disturb it."""
+    outcome = outcome_of(path.steps)
     reference = at_equal_comfort(problem, outcome.total_deviation)
     return FaultRun(
         **measure(outcome, reference).model_dump(),
         max_temperature_deviation=float(np.max(outcome.temperature_deviation)),
         seed=seed,
-        limited=None if counts is None else counts[0],
-        comfort_overrides=None if counts is None else counts[1],
+        limited=None if changed is None else int(changed.limited),
+        comfort_overrides=None if changed is None else int(changed.comfort),
     )
 
 
