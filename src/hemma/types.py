@@ -5,6 +5,7 @@ prices are currency per kWh. Positive is into the home: buying, charging, HVAC p
 load are magnitudes. A leading shape ``*slots`` is empty for one slot and ``slots`` for a period.
 """
 
+from enum import IntEnum
 from typing import TypeAlias
 
 import equinox as eqx
@@ -86,3 +87,15 @@ class Observation(eqx.Module):
     """HVAC power of the slot before [kW]: what a thermostat with hysteresis keeps."""
     slot: Int[Array, "*slots"]
     """Index of the slot in the replayed period: where a schedule finds its row."""
+
+
+class PaperState(IntEnum):
+    """Positions in s = (p, l, E, T_out, T_in, u, t'), the state of the paper, named as in ``Observation``."""
+
+    PV_GENERATION = 0
+    LOAD = 1
+    BATTERY_ENERGY = 2
+    OUTDOOR_TEMPERATURE = 3
+    INDOOR_TEMPERATURE = 4
+    BUYING_PRICE = 5
+    HOUR_OF_DAY = 6

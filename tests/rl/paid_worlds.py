@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hemma.home import Home, Step, observe
+from hemma.home import Home, Step, replay
 from hemma.rl import training
 from hemma.rl.task import explicit_task, stack
 from hemma.types import Exogenous
@@ -37,8 +37,4 @@ def played(learner, comfort_price) -> Step:
     controller = jax.tree.map(lambda x: x[0], training.controllers(trained, task, learner))
     exogenous = jax.tree.map(lambda x: jnp.asarray(x, float), traces)
 
-    def slot(state, now):
-        step = home.step(state, now, controller(observe(state, now), jax.random.key(0)), jnp.zeros(()))
-        return step.state, step
-
-    return jax.lax.scan(slot, home.reset(), exogenous)[1]
+    return replay(home, exogenous, controller, home.reset(), jax.random.key(0)).steps

@@ -10,9 +10,17 @@ from jaxtyping import Float, Int
 from hemma.forecasting.outlook import Forecaster, Outlook, yesterday
 from hemma.forecasting.published import PublishedPrices
 from hemma.rl.policies.scaling import NOTHING, PLAIN, SELLING, Context
-from hemma.types import Exogenous
+from hemma.types import Exogenous, PaperState
 
-QUANTITIES = {"pv_generation": 0, "load": 1, "outdoor_temperature": 3, "buying_price": 5}
+QUANTITIES = {
+    position.name.lower(): int(position)
+    for position in (
+        PaperState.PV_GENERATION,
+        PaperState.LOAD,
+        PaperState.OUTDOOR_TEMPERATURE,
+        PaperState.BUYING_PRICE,
+    )
+}
 """What is seen of other hours, with its position in the paper's state."""
 PRICES = ("buying_price", "selling_price")
 WINDOWS = (3.0, 6.0, 12.0, 24.0)

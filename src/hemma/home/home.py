@@ -12,7 +12,7 @@ from jaxtyping import Float, Int
 from hemma.home.battery import Battery
 from hemma.home.checks import require
 from hemma.home.thermal import AbstractThermalModel, ExplicitThermalModel, ThermalDrivers, ThermalState
-from hemma.types import Action, Array, Costs, Exogenous, Observation, Scalar
+from hemma.types import Action, Array, Costs, Exogenous, Observation, PaperState, Scalar
 
 
 class Hvac(eqx.Module):
@@ -177,20 +177,8 @@ def observe(state: HomeState, exogenous: Exogenous) -> Observation:
 
 
 def paper_state(observation: Observation) -> Float[Array, "*slots 7"]:
-    """s = (p, l, E, T_out, T_in, u, t'), the state of the paper, in its order and units."""
-    o = observation
-    return jnp.stack(
-        [
-            o.pv_generation,
-            o.load,
-            o.battery_energy,
-            o.outdoor_temperature,
-            o.indoor_temperature,
-            o.buying_price,
-            o.hour_of_day,
-        ],
-        axis=-1,
-    )
+    """s = (p, l, E, T_out, T_in, u, t'), the state of the paper: order of ``PaperState``, in units."""
+    return jnp.stack([getattr(observation, position.name.lower()) for position in PaperState], axis=-1)
 
 
 def benchmark_home(slot_length: float = 1.0) -> Home:

@@ -12,18 +12,16 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Float, Int
 
-from hemma.home import HomeState
 from hemma.home.checks import require
 from hemma.irl.maxent_rewards import Comparison, LinearMaxEnt, NeuralMaxEnt, RewardLearner
-from hemma.irl.reward_features import ENERGY, INDOOR
-from hemma.rl.environment import Environment, Transitions
+from hemma.rl.environment import Environment, rolled_out
 from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.policies.scaling import HOUR
 from hemma.rl.task import Expert, Task
 from hemma.rl.training import CHUNK
-from hemma.types import Array
+from hemma.types import Array, PaperState
 
 
 @dataclass(frozen=True)
@@ -149,23 +147,14 @@ def compare(
     starts = jax.random.randint(start_key, (windows,), 0, last + 1)
     rows = (starts[None, :] + jnp.arange(slots)[:, None]) % expert.available
     shown = jax.tree.map(lambda x: x[rows], expert.transitions)
-    keys = jax.random.split(disturbance_key, windows)
-    disturbances = jax.vmap(lambda k: environment.home.disturbances(k, slots))(keys).T
-
-    def act(state: HomeState, start: Array, features: Array, disturbance: Array):
-        slot = start + state.slot
-        fractions = policy.mean(features)
-        step = environment.step(state, start, fractions, disturbance)
-        return step.state, Transitions(features, fractions, environment.features(step.state, slot + 1))
-
-    def slot(carry: tuple[HomeState, Array], disturbance: Array):
-        states, features = carry
-        states, done = jax.vmap(act)(states, starts, features, disturbance)
-        return (states, done.next_features), done
-
     first = shown.features[0]
     states = jax.vmap(environment.home.reset)(*_stood(environment, first))
-    played = jax.lax.scan(slot, (states, first), disturbances)[1]
+
+    def act(features: Array, nothing: Array) -> tuple[Array, Array]:
+        return policy.mean(features), nothing
+
+    nothing = jnp.zeros((slots, windows))
+    played = rolled_out(environment, act, (states, starts, first), nothing, disturbance_key).transitions
     return Comparison(*(jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), t) for t in (shown, played)))
 
 
@@ -175,4 +164,4 @@ def _stood(environment: Environment, features: Float[Array, "windows features"])
     quantities = (
         scaler.centre[:HOUR] + scaler.spread[:HOUR] * features[:, :HOUR]
     )  # those two are scaled linearly
-    return quantities[:, ENERGY], quantities[:, INDOOR]
+    return quantities[:, PaperState.BATTERY_ENERGY], quantities[:, PaperState.INDOOR_TEMPERATURE]

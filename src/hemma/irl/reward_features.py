@@ -6,11 +6,13 @@ import jax.numpy as jnp
 from jaxtyping import Float
 
 from hemma.rl.environment import Transitions
+from hemma.rl.policies.scaling import HOUR
 from hemma.rl.task import Expert
-from hemma.types import Array
+from hemma.types import Array, PaperState
 
-PV, LOAD, ENERGY, OUTDOOR, INDOOR, PRICE, SINE, COSINE = range(8)
-"""Positions in the scaled state x(s) of ``hemma.rl.policies.scaling``."""
+PV, LOAD, ENERGY, OUTDOOR, INDOOR, PRICE = sorted(PaperState)[:HOUR]
+SINE, COSINE = HOUR, HOUR + 1
+"""Positions in the scaled state x(s): those of the paper's state, and the hour's sine and cosine."""
 BATTERY, HVAC = range(2)
 """Positions in the action fractions."""
 

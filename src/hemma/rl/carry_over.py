@@ -5,9 +5,9 @@ import jax.numpy as jnp
 
 from hemma.home.battery import Battery
 from hemma.rl.policies.scaling import StateScaler
+from hemma.types import PaperState
 
-ENERGY = 2
-"""Position of E in the paper's state."""
+ENERGY = PaperState.BATTERY_ENERGY
 
 
 def carried_over(scaler: StateScaler, origin: Battery, target: Battery) -> StateScaler:

@@ -1,5 +1,7 @@
 """The environment of a learner: a home that replays its training traces, in rollouts of fixed length."""
 
+from collections.abc import Callable
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -104,22 +106,42 @@ def collect(
     reset_key, noise_key, disturbance_key = jax.random.split(key, 3)
     states, starts = jax.vmap(environment.reset)(jax.random.split(reset_key, rollouts))
     noise = jax.random.normal(noise_key, (slots, rollouts, deviation.size)) * deviation
-    keys = jax.random.split(disturbance_key, rollouts)
-    disturbances = jax.vmap(lambda k: environment.home.disturbances(k, slots))(keys).T
+    begin = (states, starts, jax.vmap(environment.features)(states, starts))
 
-    def act(state: HomeState, start: Array, features: Array, noise: Array, disturbance: Array):
-        slot = start + state.slot
+    def act(features: Array, noise: Array) -> tuple[Array, Array]:
         mean = policy.mean(features)
         fractions = mean + noise
+        return fractions, log_density(fractions, mean, deviation)
+
+    return rolled_out(environment, act, begin, noise, disturbance_key)
+
+
+def rolled_out(
+    environment: Environment,
+    act: Callable[[Array, Array], tuple[Array, Array]],
+    begin: tuple[HomeState, Int[Array, "rollouts"], Float[Array, "rollouts features"]],
+    given: Array,
+    key: Array,
+) -> Rollout:
+    """The one loop of learners, for rollouts side by side, (slots, rollouts, ...).
+
+    ``act(features, given)`` tells fractions and log density; ``given`` has one entry a slot and rollout.
+    The rollouts ``begin`` with these states of the home, slots of the traces, and features.
+    """
+    states, starts, features = begin
+    slots, rollouts = given.shape[:2]
+    keys = jax.random.split(key, rollouts)
+    disturbances = jax.vmap(lambda k: environment.home.disturbances(k, slots))(keys).T
+
+    def one(state: HomeState, start: Array, features: Array, given: Array, disturbance: Array):
+        fractions, density = act(features, given)
         step = environment.step(state, start, fractions, disturbance)
-        after = environment.features(step.state, slot + 1)
-        density = log_density(fractions, mean, deviation)
+        after = environment.features(step.state, start + state.slot + 1)
         return step.state, Rollout(Transitions(features, fractions, after), density, step.costs)
 
     def slot(carry: tuple[HomeState, Array], inputs: tuple[Array, Array]):
         states, features = carry
-        states, rollout = jax.vmap(act)(states, starts, features, *inputs)
+        states, rollout = jax.vmap(one)(states, starts, features, *inputs)
         return (states, rollout.transitions.next_features), rollout
 
-    features = jax.vmap(environment.features)(states, starts)
-    return jax.lax.scan(slot, (states, features), (noise, disturbances))[1]
+    return jax.lax.scan(slot, (states, features), (given, disturbances))[1]

@@ -19,9 +19,10 @@ from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExplicitReward, Task
 from hemma.rl.training import CHUNK
-from hemma.types import Array, Exogenous
+from hemma.types import Array, Exogenous, PaperState
 
-PV, LOAD, ENERGY, PRICE = 0, 1, 2, 5
+PV, LOAD = PaperState.PV_GENERATION, PaperState.LOAD
+ENERGY, PRICE = PaperState.BATTERY_ENERGY, PaperState.BUYING_PRICE
 """Positions in the paper's state."""
 SPREADS = 5.0
 """How far from the median a price still counts as usual, in the scaler's spreads."""

@@ -21,10 +21,10 @@ from hemma.results.store import Store
 from hemma.rl.task import Demonstrated
 from hemma.stages.case import Case
 from hemma.stages.identify import IdentifiedBuilding
-from hemma.types import Action, Exogenous
+from hemma.types import Action, Exogenous, PaperState
 
 STAGE = "demonstrate"
-INDOOR = 4
+INDOOR = PaperState.INDOOR_TEMPERATURE
 """Position of T_in in the paper's state."""
 
 

@@ -6,10 +6,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hemma.home import paper_state
-from hemma.types import Array, Observation
+from hemma.types import Array, Observation, PaperState
 
-HOUR = 6
-"""Position of t' in the paper's state."""
+HOUR = int(PaperState.HOUR_OF_DAY)
 SELLING = 6
 """Position of u- among the quantities that are scaled, behind the six of the paper's state."""
 SPIKY = np.array([True, True, False, False, False, True, True])
