@@ -20,8 +20,8 @@ from hemma.results.store import Store
 from hemma.stages.case import make_case
 from hemma.stages.causal import causal_demonstration
 from hemma.stages.demonstrate import Expert
+from hemma.stages.evaluate import play
 from hemma.stages.identify import identify
-from hemma.stages.play import play
 from hemma.stages.sight import Sight
 from hemma.stages.train import train_job
 from tiny_experiment import Watching, every_method, tiny_job

@@ -18,9 +18,8 @@ from hemma.results.store import Store
 from hemma.results.summary import method_runs
 from hemma.stages.case import Case, empty_results
 from hemma.stages.demonstrate import Expert
-from hemma.stages.evaluate import Evaluator, plain_optimum
+from hemma.stages.evaluate import Evaluator, plain_optimum, play
 from hemma.stages.identify import identify
-from hemma.stages.play import play
 from hemma.stages.train import Trained, TrainingJob, train_all
 from hemma.studies.data_efficiency.lengths import USUAL, OtherLength, other_lengths
 from hemma.studies.pareto.bands import Bands, bands_job

@@ -134,22 +134,22 @@ def _chosen(sight: Sight, store: Store, job: TrainingJob, trained: Trained, pric
     layers = code("rl", "forecasting", "optimisation", "control", "evaluation")
     mark = fingerprint(STAGE, layers, trained.mark)
     product = f"{job.label}-choice"
-    content = store.kept(product, mark)
-    if content is not None:
-        return content["chosen"]
-    settings = sight.case.experiment.comfort_price
-    regrets, deviations = _measured(sight, trained)
-    values = np.asarray(list(dict.fromkeys(prices.tolist())))
-    shape = (len(values), settings.seeds)
-    mean_regrets, mean_deviations = (x.reshape(shape).mean(axis=1) for x in (regrets, deviations))
-    chosen = choose_comfort_price(values, mean_regrets, mean_deviations, settings.tolerance)
-    table = {
-        "comfort_price": values.tolist(),
-        "regret": mean_regrets.tolist(),
-        "mean_temperature_deviation": mean_deviations.tolist(),
-    }
-    store.keep(product, mark, [], {"chosen": chosen, "sweep": table})
-    return chosen
+
+    def make() -> tuple[dict, list[str]]:
+        settings = sight.case.experiment.comfort_price
+        regrets, deviations = _measured(sight, trained)
+        values = np.asarray(list(dict.fromkeys(prices.tolist())))
+        shape = (len(values), settings.seeds)
+        mean_regrets, mean_deviations = (x.reshape(shape).mean(axis=1) for x in (regrets, deviations))
+        chosen = choose_comfort_price(values, mean_regrets, mean_deviations, settings.tolerance)
+        table = {
+            "comfort_price": values.tolist(),
+            "regret": mean_regrets.tolist(),
+            "mean_temperature_deviation": mean_deviations.tolist(),
+        }
+        return {"chosen": chosen, "sweep": table}, []
+
+    return store.product(product, mark, make)["chosen"]
 
 
 def _measured(sight: Sight, trained: Trained) -> tuple[np.ndarray, np.ndarray]:

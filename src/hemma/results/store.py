@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -41,6 +41,26 @@ class Store:
     def free_run(self) -> str:
         """Name, inside the folder, of the free run of the identified network."""
         return f"identification/{self.home}.csv"
+
+    def product(
+        self,
+        name: str,
+        mark: str,
+        make: Callable[[], tuple[dict[str, Any], Iterable[str]]],
+        stage: str | None = None,
+    ) -> dict[str, Any]:
+        """The content of a product with the fingerprint ``mark``: that of an earlier run, or made now.
+
+        ``make`` writes the product's files and gives its content, as JSON, and their names inside the folder.
+        An earlier one is told of as a ``stage`` that is not run again, by the content's ``message``.
+        """
+        content = self.kept(name, mark)
+        if content is None:
+            content, files = make()
+            self.keep(name, mark, files, content)
+        elif stage is not None:
+            self.progress.reused(stage, content.get("message", ""))
+        return content
 
     def keep(self, product: str, mark: str, files: Iterable[str], content: dict[str, Any]) -> None:
         """Write the card of a product whose ``files`` (names inside the folder) have just been written."""

@@ -30,12 +30,7 @@ def causal_demonstration(store: Store, expert: Expert, sight: Sight, days: int) 
     mark = fingerprint(STAGE, layers, expert.mark, facts, days)
     variant = "-published" if sight.model.published else ""
     product = f"causal-demonstrations-{days}-days{variant}"
-    content = store.kept(product, mark)
-    if content is None:
-        content = _shown(store, expert, sight, days)
-        store.keep(product, mark, [], content)
-    else:
-        store.progress.reused(STAGE, content["message"])
+    content = store.product(product, mark, lambda: (_shown(store, expert, sight, days), []), STAGE)
     arrays = (jnp.asarray(content[name], float) for name in ("states", "actions", "next_states"))
     return Demonstration(days, Demonstrated(*arrays), mark)
 

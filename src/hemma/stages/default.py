@@ -70,12 +70,7 @@ def choose_forecast(expert: Expert, store: Store) -> Choice:
     layers = code("forecasting", "optimisation", "control", "evaluation")
     settings = (case.experiment.default, case.experiment.forecast_horizon)
     mark = fingerprint(STAGE, layers, expert.mark, settings)
-    content = store.kept(STAGE, mark)
-    if content is None:
-        content = _judged(expert, store, offered)
-        store.keep(STAGE, mark, [], content)
-    else:
-        store.progress.reused(STAGE, content["message"])
+    content = store.product(STAGE, mark, lambda: (_judged(expert, store, offered), []), STAGE)
     chosen = next(c for c in offered if c.name == content["chosen"])
     return Choice(chosen, content["regrets"], content["seconds"])
 

@@ -87,17 +87,17 @@ def demonstration(store: Store, expert: Expert, days: int) -> Demonstration:
     mark = fingerprint(STAGE, expert.mark, days)
     product = f"demonstrations-{days}-days{expert.variant}"
     file = store.model(f"{product}.safetensors")
-    content = store.kept(product, mark)
-    if content is not None:
-        store.progress.reused(STAGE, content["message"])
-    else:
+
+    def make() -> tuple[dict, list[str]]:
         begun = time.monotonic()
         shown = expert.demonstrations(days, store)
         save_demonstrations(store.folder / file, shown)
         deviation = np.mean(expert.case.home.comfort.deviation(shown.next_states[:, INDOOR]))
         message = f"{days} days, {shown.samples} transitions, mean deviation {float(deviation):.3f} °C"
-        store.keep(product, mark, [file], {"message": message, "seconds": time.monotonic() - begun})
         store.progress.finished(STAGE, message)
+        return {"message": message, "seconds": time.monotonic() - begun}, [file]
+
+    store.product(product, mark, make, STAGE)
     kept = load_demonstrations(store.folder / file)
     arrays = (jnp.asarray(a, float) for a in (kept.states, kept.actions, kept.next_states))
     return Demonstration(days, Demonstrated(*arrays), mark)

@@ -4,13 +4,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from hemma.evaluation import EqualComfort, Outcome, measure
+import jax
+
+from hemma.evaluation import EqualComfort, Outcome, evaluate_stacked, measure
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.records import Optimum, Run
 from hemma.results.schedules import write_exogenous, write_schedule
 from hemma.results.store import Store
+from hemma.rl.policies.scaling import NOTHING
 from hemma.stages.case import Case
+from hemma.stages.sight import informed
+from hemma.stages.train import Trained, TrainingJob
 
 STAGE = "evaluate"
 CODE = code("evaluation", "forecasting", "optimisation", "control")
@@ -42,13 +47,13 @@ class Evaluator:
         """The runs of ``label``, which depend on ``mark``: measured now, or kept from an earlier run."""
         mark = fingerprint(STAGE, label, CODE, self.case.mark, mark)
         product = f"{_slug(label)}.runs"
-        content = self.store.kept(product, mark)
-        if content is not None:
-            return tuple(Run.model_validate(run) for run in content["runs"])
-        runs = tuple(self._measured(label, played) for played in play())
-        files = [name for run in runs for name in (run.schedule, run.curve) if name is not None]
-        self.store.keep(product, mark, files, {"runs": [run.model_dump(mode="json") for run in runs]})
-        return runs
+
+        def make() -> tuple[dict, list[str]]:
+            runs = [self._measured(label, played) for played in play()]
+            files = [name for run in runs for name in (run.schedule, run.curve) if name is not None]
+            return {"runs": [run.model_dump(mode="json") for run in runs]}, files
+
+        return tuple(Run.model_validate(run) for run in self.store.product(product, mark, make)["runs"])
 
     def write_exogenous(self) -> None:
         """Write what the home did not decide in the test period, beside the schedules."""
@@ -64,6 +69,17 @@ class Evaluator:
         return Run(**metrics.model_dump(), seed=played.seed, schedule=schedule, curve=played.curve)
 
 
+def play(case: Case, job: TrainingJob, trained: Trained) -> list[Played]:
+    """One outcome a run of the job."""
+    keys = jax.random.split(jax.random.key(0), job.runs)
+    context = NOTHING if job.sight is None else job.sight.in_test()
+    outcomes = evaluate_stacked(case.home, case.test, informed(trained.controllers, context), keys)
+    return [
+        Played(outcome, int(seed), trained.seconds, curve)
+        for outcome, seed, curve in zip(outcomes, job.task.seed, trained.curves, strict=True)
+    ]
+
+
 def at_equal_comfort(problem: OptimumProblem, deviation: float) -> EqualComfort:
     """Perfect information with the ``deviation`` [degC in total] that a run itself caused."""
     optimum, no_battery = problem.solve(deviation), problem.solve(deviation, battery=False)
@@ -73,18 +89,18 @@ def at_equal_comfort(problem: OptimumProblem, deviation: float) -> EqualComfort:
 def plain_optimum(evaluator: Evaluator) -> Optimum:
     """Perfect information with the least reachable deviation, and its proof."""
     mark = fingerprint("optimum", CODE, evaluator.case.mark)
-    content = evaluator.store.kept("optimum", mark)
-    if content is not None:
-        return Optimum.model_validate(content)
-    found = evaluator.problem.solve()
-    optimum = Optimum(
-        energy_cost=found.cost,
-        mean_temperature_deviation=found.deviation / evaluator.case.test.slots,
-        bound=found.bound,
-        relative_gap=found.gap,
-    )
-    evaluator.store.keep("optimum", mark, [], optimum.model_dump(mode="json"))
-    return optimum
+
+    def make() -> tuple[dict, list[str]]:
+        found = evaluator.problem.solve()
+        optimum = Optimum(
+            energy_cost=found.cost,
+            mean_temperature_deviation=found.deviation / evaluator.case.test.slots,
+            bound=found.bound,
+            relative_gap=found.gap,
+        )
+        return optimum.model_dump(mode="json"), []
+
+    return Optimum.model_validate(evaluator.store.product("optimum", mark, make))
 
 
 def _slug(label: str) -> str:

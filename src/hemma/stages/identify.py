@@ -41,14 +41,8 @@ def identify(case: Case, store: Store) -> IdentifiedBuilding:
     """Fit the network to a simulated, excited training period; measure it free-running in the test period."""
     settings = case.experiment.identification
     mark = fingerprint(STAGE, code("identification"), case.mark, case.experiment.excitation, settings)
-    content = store.kept(PRODUCT, mark)
-    if content is not None:
-        found = _found(content, store)
-        store.progress.reused(STAGE, _message(found))
-    else:
-        found = _fit(case, store, mark)
-        store.progress.finished(STAGE, _message(found))
-    return IdentifiedBuilding(load_model(store.folder / store.model(NETWORK)), found, mark)
+    content = store.product(PRODUCT, mark, lambda: _fit(case, store), STAGE)
+    return IdentifiedBuilding(load_model(store.folder / store.model(NETWORK)), _found(content, store), mark)
 
 
 def identified(store: Store) -> IdentifiedBuilding:
@@ -63,7 +57,7 @@ def identified(store: Store) -> IdentifiedBuilding:
     return IdentifiedBuilding(load_model(store.folder / store.model(NETWORK)), _found(content, store), mark)
 
 
-def _fit(case: Case, store: Store, mark: str) -> Identification:
+def _fit(case: Case, store: Store) -> tuple[dict[str, Any], list[str]]:
     settings, excitation = case.experiment.identification, case.experiment.excitation
     store.progress.started(STAGE, settings.updates)
     begun = time.monotonic()
@@ -77,9 +71,12 @@ def _fit(case: Case, store: Store, mark: str) -> Identification:
     _write_free_run(case, store, fitted.model, test)
     save_model(store.folder / store.model(NETWORK), fitted, SEED)
     errors = [[horizon, float(error)] for horizon, error in _horizons(errors)]
-    content = {"seconds": time.monotonic() - begun, "errors": errors}
-    store.keep(PRODUCT, mark, [store.model(NETWORK), store.free_run], content)
-    return _found(content, store)
+    message = "free-run error " + ", ".join(
+        f"{error:.2g} °C after {horizon}" for horizon, error in errors[:3]
+    )
+    store.progress.finished(STAGE, message)
+    content = {"seconds": time.monotonic() - begun, "errors": errors, "message": message}
+    return content, [store.model(NETWORK), store.free_run]
 
 
 def _horizons(errors: FreeRunErrors) -> list[tuple[str, float]]:
@@ -93,12 +90,6 @@ def _horizons(errors: FreeRunErrors) -> list[tuple[str, float]]:
 
 def _found(content: dict[str, Any], store: Store) -> Identification:
     return Identification(rmse_c=dict(content["errors"]), free_run=store.free_run, seconds=content["seconds"])
-
-
-def _message(found: Identification) -> str:
-    return "free-run error " + ", ".join(
-        f"{error:.2g} °C after {horizon}" for horizon, error in list(found.rmse_c.items())[:3]
-    )
 
 
 def _write_free_run(

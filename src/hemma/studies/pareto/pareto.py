@@ -10,8 +10,7 @@ from hemma.methods.bill import Sweep
 from hemma.results.findings import ParetoPoint
 from hemma.results.records import Run
 from hemma.results.summary import method_runs
-from hemma.stages.evaluate import Evaluator
-from hemma.stages.play import play
+from hemma.stages.evaluate import Evaluator, play
 from hemma.stages.train import Trained
 from hemma.studies.pareto.bands import Bands
 

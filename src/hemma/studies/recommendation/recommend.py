@@ -47,18 +47,13 @@ class Tryout:
 
     def recommendation(self) -> Recommendation | None:
         """The simplest contender that is about as good as the best; None if there are no days to judge on."""
-        mark = self._mark()
-        content = self.store.kept(STAGE, mark)
-        if content is None:
-            found = self._found()
-            judged = None if found is None else found.model_dump(mode="json")
-            self.store.keep(STAGE, mark, [], {"found": judged})
-            return found
-        found = content["found"]
-        if found is None:
-            return None
-        self.store.progress.reused(STAGE, found["method"])
-        return Recommendation.model_validate(found)
+        found = self.store.product(STAGE, self._mark(), self._made, STAGE)["found"]
+        return None if found is None else Recommendation.model_validate(found)
+
+    def _made(self) -> tuple[dict, list[str]]:
+        found = self._found()
+        judged = None if found is None else found.model_dump(mode="json")
+        return {"found": judged, "message": "nothing to judge on" if found is None else found.method}, []
 
     def _mark(self) -> str:
         experiment = self.expert.case.experiment

@@ -84,8 +84,8 @@ class Trial:
         )
         mark = fingerprint(STAGE, layers, self._marks, self._settings, fault.name, actor._marks)
         product = f"{STAGE}-{fault.name.replace(' ', '-')}"
-        content = self.store.kept(product, mark)
-        if content is None:
+
+        def make() -> tuple[dict, list[str]]:
             case = self.expert.case
             now = fault.happen(scene(case.home, case.test), np.random.default_rng(SEED))
             met = MetFault(
@@ -94,9 +94,9 @@ class Trial:
                 repaired_readings=now.repaired,
                 methods={method: _together(runs) for method, runs in actor.runs(now).items()},
             )
-            self.store.keep(product, mark, [], met.model_dump(mode="json"))
-            return met
-        return MetFault.model_validate(content)
+            return met.model_dump(mode="json"), []
+
+        return MetFault.model_validate(self.store.product(product, mark, make))
 
     def runs(self, now: Scene) -> dict[str, list[FaultRun]]:
         """What the methods that learned in this home do in a scene, be it of another one."""
