@@ -8,8 +8,8 @@ import pytest
 
 from hemma.errors import HemmaError
 from hemma.evaluation.reward_maps import (
-    Choice,
     Grid,
+    Varied,
     agreement,
     answers,
     outdoor_and_indoor,
@@ -76,7 +76,7 @@ def test_axes_in_physical_units_invert_the_scaler():
 
 
 def test_a_reward_that_charges_below_a_price_is_seen_to_do_so_at_that_price():
-    found = answers(stacked(trader()), Home(), price_and_energy(days(), 15.0, GRID, Home()), Choice.BATTERY)
+    found = answers(stacked(trader()), Home(), price_and_energy(days(), 15.0, GRID, Home()), Varied.BATTERY)
     wanted = np.asarray(preferred(found.battery_power, found.ground))[0]
     middle = wanted[2]  # half full: 2.5 kW and more is feasible both ways
     assert (middle[GRID.x < 0.115] > 2.0).all()
@@ -85,7 +85,7 @@ def test_a_reward_that_charges_below_a_price_is_seen_to_do_so_at_that_price():
 
 
 def test_without_shaping_r_is_g():
-    found = answers(stacked(trader()), Home(), price_and_energy(days(), 3.0, GRID, Home()), Choice.BATTERY)
+    found = answers(stacked(trader()), Home(), price_and_energy(days(), 3.0, GRID, Home()), Varied.BATTERY)
     np.testing.assert_array_equal(found.ground, found.reward)
 
 
@@ -98,7 +98,7 @@ def test_shaping_pays_for_where_the_slot_ends():
         (weight, jnp.asarray([[-1.0, 0.0]])),
     )
     grid = Grid(np.linspace(28.0, 36.0, 4), np.linspace(22.0, 25.0, 3))
-    found = answers(stacked(cool), Home(), outdoor_and_indoor(days(), 15.0, grid, Home()), Choice.HVAC)
+    found = answers(stacked(cool), Home(), outdoor_and_indoor(days(), 15.0, grid, Home()), Varied.HVAC)
     ends = np.asarray(found.next_temperature)
     np.testing.assert_array_equal(preferred(found.next_temperature, found.reward)[0], ends.min(axis=-1))
     assert np.ptp(np.asarray(found.ground)) == 0.0
@@ -106,7 +106,7 @@ def test_shaping_pays_for_where_the_slot_ends():
 
 def test_an_hvac_fraction_of_nothing_ends_at_the_edge_of_comfort():
     grid = Grid(np.linspace(28.0, 36.0, 4), np.linspace(23.0, 24.5, 3))
-    found = answers(stacked(blank()), Home(), outdoor_and_indoor(days(), 15.0, grid, Home()), Choice.HVAC)
+    found = answers(stacked(blank()), Home(), outdoor_and_indoor(days(), 15.0, grid, Home()), Varied.HVAC)
     ends = np.asarray(found.next_temperature)
     np.testing.assert_allclose(ends[..., ends.shape[-1] // 2], 24.0, atol=1e-3)
 

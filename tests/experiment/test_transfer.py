@@ -13,7 +13,7 @@ from hemma.errors import HemmaError
 from hemma.irl.learned_reward import load_rewards
 from hemma.irl.reward import ShapedReward
 from hemma.settings.experiment import Experiment
-from hemma.studies.transfer.changes import CHANGES, places
+from hemma.studies.transfer.changes import CHANGES
 from hemma.studies.transfer.run import GAIL, POLICY, TransferJob, transfer
 from tiny_experiment import Watching, tiny_experiment
 
@@ -22,8 +22,8 @@ FEW = tuple(BY_NAME[name] for name in ("unchanged", "twice the battery"))
 
 
 @pytest.fixture(scope="module")
-def all_places():
-    made = places(Experiment(), load_austin2021(1))
+def all_cases():
+    made = changed_cases(Experiment(), load_austin2021(1))
     return {place.change.name: place.case for place in made}
 
 
@@ -41,46 +41,46 @@ def done(tmp_path_factory):
     return folder, transfer(tiny_transfer(folder))
 
 
-def test_june_teaches_july_measures_and_august_is_never_seen(all_places):
-    for name, case in all_places.items():
+def test_june_teaches_july_measures_and_august_is_never_seen(all_cases):
+    for name, case in all_cases.items():
         first = "2021-07-01" if name == "other month" else "2021-06-01"
         assert case.parts.training.time_stamps()[0].startswith(first)
         assert case.parts.test.time_stamps()[0].startswith("2021-07-16T00:00")
         assert case.parts.test.time_stamps()[-1].startswith("2021-07-31T23:00")
 
 
-def test_every_change_changes_what_it_says_and_nothing_else(all_places):
-    same = all_places["unchanged"]
-    battery = all_places["twice the battery"].home.battery
+def test_every_change_changes_what_it_says_and_nothing_else(all_cases):
+    same = all_cases["unchanged"]
+    battery = all_cases["twice the battery"].home.battery
     assert (battery.max_energy, battery.max_charging_power) == (12.0, 6.0)
-    slow = all_places["half the power"].home.battery
+    slow = all_cases["half the power"].home.battery
     assert (slow.max_energy, slow.max_discharging_power) == (6.0, 1.5)
-    assert all_places["leaky house"].home.thermal_model.conductance == pytest.approx(1.5 * 0.252)
+    assert all_cases["leaky house"].home.thermal_model.conductance == pytest.approx(1.5 * 0.252)
     for name in ("twice the battery", "half the power", "leaky house"):
-        np.testing.assert_array_equal(all_places[name].training.buying_price, same.training.buying_price)
+        np.testing.assert_array_equal(all_cases[name].training.buying_price, same.training.buying_price)
     for name in ("twice the spread", "time of use"):
-        assert all_places[name].home == same.home
-        np.testing.assert_array_equal(all_places[name].training.load, same.training.load)
+        assert all_cases[name].home == same.home
+        np.testing.assert_array_equal(all_cases[name].training.load, same.training.load)
 
 
-def test_changed_prices_have_the_mean_of_the_real_ones(all_places):
+def test_changed_prices_have_the_mean_of_the_real_ones(all_cases):
     def prices(case):
         return np.concatenate([case.training.buying_price, case.test.buying_price])
 
-    real = prices(all_places["unchanged"])
-    wide, two = prices(all_places["twice the spread"]), prices(all_places["time of use"])
+    real = prices(all_cases["unchanged"])
+    wide, two = prices(all_cases["twice the spread"]), prices(all_cases["time of use"])
     np.testing.assert_allclose([wide.mean(), two.mean()], real.mean(), rtol=1e-9)
     np.testing.assert_allclose(wide.std(), 2 * real.std(), rtol=1e-9)
     assert len(np.unique(two.round(9))) == 2
     np.testing.assert_allclose(two.max(), 3 * two.min())
-    hours = all_places["time of use"].training.hour_of_day
-    dear = all_places["time of use"].training.buying_price > real.mean()
+    hours = all_cases["time of use"].training.hour_of_day
+    dear = all_cases["time of use"].training.buying_price > real.mean()
     assert set(hours[dear]) == {15.0, 16.0, 17.0, 18.0, 19.0}
 
 
 def test_too_short_a_training_period_is_refused():
     with pytest.raises(HemmaError, match="expected a training period of more than 30 days"):
-        places(Experiment(), load_austin2021(1).window(0, 24 * 50))
+        changed_cases(Experiment(), load_austin2021(1).window(0, 24 * 50))
 
 
 @pytest.mark.slow

@@ -22,7 +22,7 @@ from hemma.rl.improvement import Proximal
 from hemma.rl.policies.committee import Committee
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
-from hemma.rl.task import Expert, make_task, stack
+from hemma.rl.task import make_task, stack
 
 SMALL = AIRLSettings(
     iterations=50,
@@ -87,7 +87,7 @@ def test_logit_is_that_of_equation_10_and_loss_that_of_equation_12():
 def test_the_density_of_an_impossible_action_is_bounded():
     policy = GaussianPolicy((16,), jax.random.key(2))
     far = eqx.tree_at(lambda t: t.fractions, transitions(3), jnp.full((3, 2), 1e30))
-    contest = Contest(Expert(far, jnp.asarray(3)), far, policy, jnp.asarray([0.2, 0.1]))
+    contest = Contest(ExpertData(far, jnp.asarray(3)), far, policy, jnp.asarray([0.2, 0.1]))
     np.testing.assert_array_equal(contest.density(far, 10.0), [-10.0] * 3)
 
 

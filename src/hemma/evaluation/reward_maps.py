@@ -32,7 +32,7 @@ class Moment(eqx.Module):
     """T_in [degC]."""
 
 
-class Choice(IntEnum):
+class Varied(IntEnum):
     """Which of the two fractions is chosen; the other one rests at 0, the HVAC then at comfort."""
 
     BATTERY = 0
@@ -100,9 +100,9 @@ def outdoor_and_indoor(days: Exogenous, hour: float, grid: Grid, home: Home) -> 
     return Moment(at_outdoor(now, outdoor), at_outdoor(after, outdoor), energy, indoor)
 
 
-def answers(rewards: LearnedReward, home: Home, moment: Moment, choice: Choice) -> Answers:
+def answers(rewards: LearnedReward, home: Home, moment: Moment, choice: Varied) -> Answers:
     """What each fraction of ``choice`` is paid by every run; ``home`` is the one that counts fractions."""
-    tried = jnp.zeros((FRACTIONS.size, len(Choice))).at[:, choice].set(FRACTIONS)
+    tried = jnp.zeros((FRACTIONS.size, len(Varied))).at[:, choice].set(FRACTIONS)
     shape = moment.battery_energy.shape
     points = jax.tree.map(lambda x: jnp.asarray(x).reshape(-1), moment)
 

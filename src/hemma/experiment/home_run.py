@@ -109,17 +109,17 @@ class HomeRun:
         trained = train_all(shown.all, self.store)
         results = self._recommended(results, expert, trained)
         for name, job in shown.jobs.items():
-            results = self._learned(results, name, self._judged(evaluator, job, trained))
+            results = self._learned(results, name, self._evaluated(evaluator, job, trained))
         for other in shown.lengths:
-            results = self._length(results, other.days, self._judged(evaluator, other.job, trained))
+            results = self._length(results, other.days, self._evaluated(evaluator, other.job, trained))
         others = self._others(expert)
         for name, job in others.items():
-            found = self._judged(evaluator, job, train_all([job], self.store))
+            found = self._evaluated(evaluator, job, train_all([job], self.store))
             results = self._learned(results, name, found)
         results = self._put(results, regret=split_regrets(evaluator, known, results.methods))
         self._pareto(results, evaluator, expert, shown.bands, trained)
 
-    def _judged(self, evaluator: Evaluator, job: TrainingJob, trained: dict[str, Trained]) -> MethodRuns:
+    def _evaluated(self, evaluator: Evaluator, job: TrainingJob, trained: dict[str, Trained]) -> MethodRuns:
         one = trained[job.label]
         return method_runs(evaluator.evaluated(job.label, one.mark, partial(play, self.case, job, one)))
 

@@ -13,7 +13,7 @@ from hemma.identification.pcnn import InputScaling, PcnnWeights, PhysicallyConsi
 from hemma.identification.record import ThermalRecord
 from hemma.identification.settings import IdentificationSettings
 from hemma.identification.start import input_scaling, least_squares_response
-from hemma.identification.training import Training
+from hemma.identification.training import NetworkTraining
 from hemma.types import Array
 
 Numbers = TypeVar("Numbers", ThermalResponse, InputScaling)
@@ -64,7 +64,7 @@ def fit(
         scaling=_as_arrays(input_scaling(training)),
         slot_length=record.slot_length,
     )
-    return _run(Training(settings, length, training, validation), model, batch_key, on_progress)
+    return _run(NetworkTraining(settings, length, training, validation), model, batch_key, on_progress)
 
 
 def _as_arrays(numbers: Numbers) -> Numbers:
@@ -87,7 +87,7 @@ def parted(slots: int, slot_length: float, settings: IdentificationSettings) -> 
 
 
 def _run(
-    training: Training, start: PhysicallyConsistentNetwork, key: Array, on_progress: Progress | None
+    training: NetworkTraining, start: PhysicallyConsistentNetwork, key: Array, on_progress: Progress | None
 ) -> Fit:
     """Chunks of updates are compiled; between them the host looks, reports and stops."""
     settings, state = training.settings, training.initial(start)

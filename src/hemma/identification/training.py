@@ -13,14 +13,14 @@ from hemma.identification.validation import run_free, windows
 from hemma.types import Array
 
 
-class TrainingState(eqx.Module):
+class NetworkTrainingState(eqx.Module):
     """What changes from update to update."""
 
     model: PhysicallyConsistentNetwork
     optimiser: optax.OptState
 
 
-class Training(eqx.Module):
+class NetworkTraining(eqx.Module):
     """The two parts of a record and what is done with them."""
 
     settings: IdentificationSettings = eqx.field(static=True)
@@ -34,12 +34,12 @@ class Training(eqx.Module):
         """Adam, its step falling to zero along a cosine."""
         return optax.adam(optax.cosine_decay_schedule(self.settings.learning_rate, self.settings.updates))
 
-    def initial(self, model: PhysicallyConsistentNetwork) -> TrainingState:
+    def initial(self, model: PhysicallyConsistentNetwork) -> NetworkTrainingState:
         """State before the first update."""
-        return TrainingState(model, self.optimiser.init(eqx.filter(model.weights, eqx.is_array)))
+        return NetworkTrainingState(model, self.optimiser.init(eqx.filter(model.weights, eqx.is_array)))
 
     @eqx.filter_jit
-    def updates(self, state: TrainingState, keys: Array) -> tuple[TrainingState, Array]:
+    def updates(self, state: NetworkTrainingState, keys: Array) -> tuple[NetworkTrainingState, Array]:
         """One update per key; the mean square error of each [degC^2]."""
         constant = state.model
 
@@ -52,7 +52,7 @@ class Training(eqx.Module):
             return (eqx.apply_updates(weights, changes), optimiser), error
 
         (weights, optimiser), errors = jax.lax.scan(update, (constant.weights, state.optimiser), keys)
-        return TrainingState(_with_weights(constant, weights), optimiser), errors
+        return NetworkTrainingState(_with_weights(constant, weights), optimiser), errors
 
     def loss(
         self, weights: PcnnWeights, constant: PhysicallyConsistentNetwork, key: Array

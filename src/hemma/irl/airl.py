@@ -14,10 +14,10 @@ from hemma.irl.discriminator import cross_entropy, gradient_penalty
 from hemma.irl.reward import AbstractHead, ShapedReward
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Rollout, Transitions
-from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
+from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, measured, standard
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy, log_density
-from hemma.rl.task import Expert, Task
+from hemma.rl.task import Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
 
@@ -39,7 +39,7 @@ class AIRLSettings:
     steps: int = 4
     """Discriminator updates an iteration."""
     batch: int = 512
-    """Expert and as many agent transitions an update, I / 2."""
+    """Expert transitions and as many agent transitions an update, I / 2."""
     learning_rate: float = 5e-3
     """Of the discriminator's Adam."""
     penalty: float = 0.0
@@ -74,7 +74,7 @@ class AIRLSettings:
         return self.penalty * jnp.maximum(1.0 - iteration / (self.relaxing * self.iterations), 0.0)
 
 
-class TrainingState(eqx.Module):
+class ImitationState(eqx.Module):
     """All that training carries from iteration to iteration: save it, and training goes on the same."""
 
     learner: Any
@@ -90,7 +90,7 @@ class TrainingState(eqx.Module):
     key: Array
 
 
-class Progress(eqx.Module):
+class ImitationProgress(eqx.Module):
     """What one iteration tells about itself."""
 
     discriminator_loss: Float[Array, "*iterations"]
@@ -111,7 +111,7 @@ class AdversarialImitation:
     """Algorithm 1. Its arguments make it AIRL by PPO (the paper), or GAIL."""
 
     settings: AIRLSettings = field(default_factory=AIRLSettings)
-    improvement: Improvement = field(default_factory=Proximal)
+    improvement: PolicyImprovement = field(default_factory=Proximal)
     head: type[AbstractHead] = ShapedReward
 
     @property
@@ -119,11 +119,11 @@ class AdversarialImitation:
         """N."""
         return self.settings.iterations
 
-    def policy(self, state: TrainingState) -> GaussianPolicy:
+    def policy(self, state: ImitationState) -> GaussianPolicy:
         """The averaged policy."""
         return state.average
 
-    def start(self, task: Task[Expert], key: Array) -> TrainingState:
+    def start(self, task: Task[ExpertData], key: Array) -> ImitationState:
         """Initial policy pi_0 and reward r_0; the replay is filled with transitions of pi_0."""
         settings, width = self.settings, task.environment.width
         learner_key, head_key, replay_key, key = jax.random.split(key, 4)
@@ -136,7 +136,7 @@ class AdversarialImitation:
             return self._kept(self.improvement.explore(learner, task.environment, effort, key))
 
         replay = jax.vmap(kept)(jax.random.split(replay_key, settings.replayed))
-        return TrainingState(
+        return ImitationState(
             learner=learner,
             head=head,
             head_optimiser=begin(_optimiser(settings), head),
@@ -146,7 +146,9 @@ class AdversarialImitation:
             key=key,
         )
 
-    def iterate(self, state: TrainingState, task: Task[Expert]) -> tuple[TrainingState, Progress]:
+    def iterate(
+        self, state: ImitationState, task: Task[ExpertData]
+    ) -> tuple[ImitationState, ImitationProgress]:
         """One iteration n of Algorithm 1 (its lines 3 to 10)."""
         settings, n = self.settings, state.iteration
         key, explore_key, head_key, improve_key = jax.random.split(state.key, 4)
@@ -167,8 +169,8 @@ class AdversarialImitation:
         learner = self.improvement.improve(state.learner, rollout, standard(rewards), effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
         seen = measured(rollout, rewards)
-        progress = Progress(*judged, seen.reward, seen.energy_cost, seen.temperature_deviation)
-        return TrainingState(learner, head, head_optimiser, replay, average, n + 1, key), progress
+        progress = ImitationProgress(*judged, seen.reward, seen.energy_cost, seen.temperature_deviation)
+        return ImitationState(learner, head, head_optimiser, replay, average, n + 1, key), progress
 
     def _deviation(self, iteration: Array) -> Float[Array, "actions"]:
         return self.settings.exploration.deviation(iteration, self.settings.iterations)
@@ -182,7 +184,7 @@ class AdversarialImitation:
 class Contest(eqx.Module):
     """What the discriminator has to tell apart, and how smoothly."""
 
-    expert: Expert
+    expert: ExpertData
     replay: Transitions
     """Of the agent, (replayed, samples, ...)."""
     policy: GaussianPolicy

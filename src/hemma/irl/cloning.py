@@ -13,7 +13,7 @@ from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions
 from hemma.rl.policies.exploration import falling
 from hemma.rl.policies.policy import ACTIONS, GaussianPolicy
-from hemma.rl.task import Expert, Task
+from hemma.rl.task import Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
 
@@ -90,14 +90,14 @@ class BehaviourCloning:
         """The best so far on the held-out days."""
         return state.best
 
-    def start(self, task: Task[Expert], key: Array) -> CloningState:
+    def start(self, task: Task[ExpertData], key: Array) -> CloningState:
         """A random policy."""
         policy_key, key = jax.random.split(key)
         policy = GaussianPolicy(self.settings.hidden, policy_key, task.environment.width)
         nothing = jnp.full(ACTIONS, jnp.inf)
         return CloningState(policy, begin(self._method(), policy), policy, nothing, jnp.zeros((), int), key)
 
-    def iterate(self, state: CloningState, task: Task[Expert]) -> tuple[CloningState, CloningProgress]:
+    def iterate(self, state: CloningState, task: Task[ExpertData]) -> tuple[CloningState, CloningProgress]:
         """``steps`` of Adam on minibatches, and a look at the held-out days."""
         key, sample_key = jax.random.split(state.key)
         expert, share = task.teacher, falling(state.iteration, self.settings.iterations)
@@ -124,7 +124,7 @@ class BehaviourCloning:
         return optax.adamw(self.settings.learning_rate, weight_decay=decay, mask=_decayed)
 
 
-def split_days(task: Task[Expert], every: int) -> tuple[Bool[Array, "samples"], Bool[Array, "samples"]]:
+def split_days(task: Task[ExpertData], every: int) -> tuple[Bool[Array, "samples"], Bool[Array, "samples"]]:
     """Which transitions are learned from and which are held out: the last of ``every`` days in turn.
 
     Whole days, because neighbouring hours tell each other's answer. Demonstrations of fewer days than

@@ -15,11 +15,11 @@ from jaxtyping import Float, Int
 from hemma.home.checks import require
 from hemma.irl.maxent_rewards import Comparison, LinearMaxEnt, NeuralMaxEnt, RewardLearner
 from hemma.rl.environment import Environment, rolled_out
-from hemma.rl.improvement import Effort, Improvement, Proximal, measured, standard
+from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, measured, standard
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.policies.scaling import HOUR
-from hemma.rl.task import Expert, Task
+from hemma.rl.task import Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array, PaperState
 
@@ -81,7 +81,7 @@ class MaxEnt:
 
     settings: MaxEntSettings
     reward: RewardLearner
-    improvement: Improvement = field(default_factory=Proximal)
+    improvement: PolicyImprovement = field(default_factory=Proximal)
 
     @property
     def iterations(self) -> int:
@@ -92,14 +92,14 @@ class MaxEnt:
         """The averaged policy."""
         return state.average
 
-    def start(self, task: Task[Expert], key: Array) -> MaxEntState:
+    def start(self, task: Task[ExpertData], key: Array) -> MaxEntState:
         """Random policy and first reward."""
         learner_key, reward_key, key = jax.random.split(key, 3)
         learner = self.improvement.start(learner_key, task.environment.width)
         learned = self.reward.start(task.teacher, self.improvement.discount, reward_key)
         return MaxEntState(learner, learned, self.improvement.policy(learner), jnp.zeros((), int), key)
 
-    def iterate(self, state: MaxEntState, task: Task[Expert]) -> tuple[MaxEntState, MaxEntProgress]:
+    def iterate(self, state: MaxEntState, task: Task[ExpertData]) -> tuple[MaxEntState, MaxEntProgress]:
         """One step of the reward, and one of the policy towards its best response."""
         settings, n = self.settings, state.iteration
         key, compare_key, reward_key, explore_key, improve_key = jax.random.split(state.key, 5)
@@ -123,18 +123,22 @@ class MaxEnt:
         return MaxEntState(learner, learned, average, n + 1, key), progress
 
 
-def linear_maxent(settings: MaxEntSettings, improvement: Improvement) -> MaxEnt:
+def linear_maxent(settings: MaxEntSettings, improvement: PolicyImprovement) -> MaxEnt:
     """MaxEnt IRL with a reward that is linear in named features."""
     return MaxEnt(settings, settings.linear, improvement)
 
 
-def neural_maxent(settings: MaxEntSettings, improvement: Improvement) -> MaxEnt:
+def neural_maxent(settings: MaxEntSettings, improvement: PolicyImprovement) -> MaxEnt:
     """MaxEnt IRL with a neural reward."""
     return MaxEnt(settings, settings.neural, improvement)
 
 
 def compare(
-    environment: Environment, expert: Expert, policy: GaussianPolicy, shape: tuple[int, int], key: Array
+    environment: Environment,
+    expert: ExpertData,
+    policy: GaussianPolicy,
+    shape: tuple[int, int],
+    key: Array,
 ) -> Comparison:
     """Random windows of the demonstrations, and the policy's mean action from the state in which each begins.
 

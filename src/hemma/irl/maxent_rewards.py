@@ -15,7 +15,6 @@ from hemma.irl.reward import ShapedReward
 from hemma.irl.reward_features import LinearReward, demonstrated_scale
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions
-from hemma.rl.task import Expert
 from hemma.types import Array
 
 
@@ -33,7 +32,7 @@ class RewardLearner(Protocol):
     What it carries from step to step has a ``reward``, and that has ``batch(transitions)``.
     """
 
-    def start(self, expert: Expert, discount: float, key: Array) -> Any:
+    def start(self, expert: ExpertData, discount: float, key: Array) -> Any:
         """r before the first comparison; ``discount`` is gamma."""
         ...
 
@@ -78,7 +77,7 @@ class LinearMaxEnt:
         stable = self.rate * self.shrinkage < 1
         require("maxent.linear", stable, "rate * shrinkage < 1", self.rate * self.shrinkage)
 
-    def start(self, expert: Expert, discount: float, key: Array) -> LearnedWeights:
+    def start(self, expert: ExpertData, discount: float, key: Array) -> LearnedWeights:
         """w = 0."""
         scale = demonstrated_scale(expert, self.least_scale)
         reward = LinearReward(jax.tree.map(jnp.zeros_like, scale), scale)
@@ -121,7 +120,7 @@ class NeuralMaxEnt:
         wide = all(width >= 1 for width in self.hidden)
         require("maxent.neural", wide, "hidden layers of at least 1 unit", self.hidden)
 
-    def start(self, expert: Expert, discount: float, key: Array) -> LearnedNetworks:
+    def start(self, expert: ExpertData, discount: float, key: Array) -> LearnedNetworks:
         """Random networks."""
         width = expert.transitions.features.shape[-1]
         reward = ShapedReward.random(self.hidden, discount, key, width)

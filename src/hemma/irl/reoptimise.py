@@ -14,7 +14,7 @@ from jaxtyping import Float
 from hemma.irl.reward import ShapedReward
 from hemma.rl.environment import Rollout, Transitions
 from hemma.rl.explicit import ExplicitLearning, ExplicitState
-from hemma.rl.improvement import Measured, standard
+from hemma.rl.improvement import RolloutMeans, standard
 from hemma.rl.policies.network import Network
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.policies.scaling import StateScaler
@@ -86,7 +86,7 @@ class Reoptimisation:
         """A random policy."""
         return self.learning.start(task, key)
 
-    def iterate(self, state: ExplicitState, task: Task) -> tuple[ExplicitState, Measured]:
+    def iterate(self, state: ExplicitState, task: Task) -> tuple[ExplicitState, RolloutMeans]:
         """One improvement of the policy."""
 
         def paid(rollout: Rollout) -> Float[Array, "slots rollouts"]:
@@ -96,7 +96,7 @@ class Reoptimisation:
 
 
 @dataclass(frozen=True)
-class Adaptation:
+class InheritedReoptimisation:
     """The same from the policy of an ``Inheritance``: it begins where its reward was learned."""
 
     learning: Reoptimisation = field(default_factory=Reoptimisation)
@@ -115,6 +115,6 @@ class Adaptation:
         state, policy = self.learning.start(task, key), task.teacher.policy
         return eqx.tree_at(lambda s: (s.learner.networks.policy, s.average), state, (policy, policy))
 
-    def iterate(self, state: ExplicitState, task: Task) -> tuple[ExplicitState, Measured]:
+    def iterate(self, state: ExplicitState, task: Task) -> tuple[ExplicitState, RolloutMeans]:
         """One improvement of the policy."""
         return self.learning.iterate(state, task)

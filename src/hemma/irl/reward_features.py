@@ -7,7 +7,6 @@ from jaxtyping import Float
 
 from hemma.rl.environment import Transitions
 from hemma.rl.policies.scaling import HOUR
-from hemma.rl.task import Expert
 from hemma.types import Array, PaperState
 
 PV, LOAD, ENERGY, OUTDOOR, INDOOR, PRICE = sorted(PaperState)[:HOUR]
@@ -113,7 +112,7 @@ class LinearReward(eqx.Module):
         return jnp.sum(jnp.stack(jax.tree.leaves(terms)), axis=0)
 
 
-def demonstrated_scale(expert: Expert, least: float) -> RewardFeatures:
+def demonstrated_scale(expert: ExpertData, least: float) -> RewardFeatures:
     """Standard deviation of each feature over the demonstrations, but not below ``least``."""
     features = reward_features(expert.transitions)
     counted = jnp.arange(expert.transitions.fractions.shape[0]) < expert.available

@@ -20,7 +20,7 @@ from hemma.rl.training import Algorithm
 from hemma.settings.experiment import Experiment
 from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
-from hemma.stages.sight import Sight, informed, sight_of
+from hemma.stages.observer import HomeObserver, informed, observer_of
 from hemma.stages.train import Trained, TrainingJob, train_job
 
 STAGE = "comfort price"
@@ -53,13 +53,13 @@ class AbstractBillLearner(AbstractLearner):
         """The whole training period, with the beta_T that the sweep chose."""
         case, price = expert.case, self.sweep(expert, store).chosen
         days, seeds = case.first_days(case.training_days), range(case.experiment.seeds)
-        sight = sight_of(self.observation_model, expert, store)
-        seen = sight.learning(case.training_days)
+        observer = observer_of(self.observation_model, expert, store)
+        seen = observer.learning(case.training_days)
         task = stack(
             [explicit_task(expert.planning_home, case.home, days, price, seed, seen) for seed in seeds]
         )
-        basis = fingerprint("explicit", case.mark, expert.identification.mark, price, sight.mark)
-        return TrainingJob(self.name, self.algorithm(case.experiment), task, basis, sight)
+        basis = fingerprint("explicit", case.mark, expert.identification.mark, price, observer.mark)
+        return TrainingJob(self.name, self.algorithm(case.experiment), task, basis, observer)
 
     def seen_days(self, experiment: Experiment, training_days: int) -> int:
         """All."""
@@ -76,16 +76,16 @@ class AbstractBillLearner(AbstractLearner):
         days = case.first_days(learned)
         values = comfort_prices(case.home, days, settings.multiples)
         pairs = [(float(value), seed) for value in values for seed in range(settings.seeds)]
-        sight = sight_of(self.observation_model, expert, store)
-        seen = sight.learning(learned, learned)
+        observer = observer_of(self.observation_model, expert, store)
+        seen = observer.learning(learned, learned)
         task = stack(
             [explicit_task(expert.planning_home, case.home, days, price, seed, seen) for price, seed in pairs]
         )
-        basis = fingerprint(STAGE, case.mark, expert.identification.mark, settings, sight.mark)
-        job = TrainingJob(f"{self.name}-sweep", self.algorithm(case.experiment), task, basis, sight)
+        basis = fingerprint(STAGE, case.mark, expert.identification.mark, settings, observer.mark)
+        job = TrainingJob(f"{self.name}-sweep", self.algorithm(case.experiment), task, basis, observer)
         trained = train_job(job, store)
         prices = tuple(price for price, _ in pairs)
-        return Sweep(job, trained, prices, _chosen(sight, store, job, trained, np.asarray(prices)))
+        return Sweep(job, trained, prices, _chosen(observer, store, job, trained, np.asarray(prices)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,15 +129,17 @@ def _learned_days(case: Case) -> int:
     return min(max(wanted, 1), case.training_days - 1)
 
 
-def _chosen(sight: Sight, store: Store, job: TrainingJob, trained: Trained, prices: np.ndarray) -> float:
+def _chosen(
+    observer: HomeObserver, store: Store, job: TrainingJob, trained: Trained, prices: np.ndarray
+) -> float:
     """beta_T by the mean regret and deviation of its runs on the training days that they did not see."""
     layers = code("rl", "forecasting", "optimisation", "control", "evaluation")
     mark = fingerprint(STAGE, layers, trained.mark)
     product = f"{job.label}-choice"
 
     def make() -> tuple[dict, list[str]]:
-        settings = sight.case.experiment.comfort_price
-        regrets, deviations = _measured(sight, trained)
+        settings = observer.case.experiment.comfort_price
+        regrets, deviations = _measured(observer, trained)
         values = np.asarray(list(dict.fromkeys(prices.tolist())))
         shape = (len(values), settings.seeds)
         mean_regrets, mean_deviations = (x.reshape(shape).mean(axis=1) for x in (regrets, deviations))
@@ -152,14 +154,14 @@ def _chosen(sight: Sight, store: Store, job: TrainingJob, trained: Trained, pric
     return store.product(product, mark, make)["chosen"]
 
 
-def _measured(sight: Sight, trained: Trained) -> tuple[np.ndarray, np.ndarray]:
+def _measured(observer: HomeObserver, trained: Trained) -> tuple[np.ndarray, np.ndarray]:
     """Regret at equal comfort [currency] and mean deviation [degC] of each run on the days held out."""
-    case = sight.case
+    case = observer.case
     first = case.first_days(_learned_days(case)).slots
     days = case.training.window(first, case.training.slots)
     problem = optimum_problem(case.home, days)
     keys = jax.random.split(jax.random.key(0), trained.runs)
-    acting = informed(trained.controllers, sight.held_out(first))
+    acting = informed(trained.controllers, observer.held_out(first))
     outcomes = evaluate_stacked(case.home, days, acting, keys)
     regrets = [
         float(np.sum(outcome.cost)) - problem.solve(outcome.total_deviation).cost for outcome in outcomes

@@ -14,7 +14,7 @@ from hemma.rl.training import Algorithm
 from hemma.settings.experiment import Experiment
 from hemma.stages.causal import causal_demonstration
 from hemma.stages.demonstrate import Demonstration, Expert, demonstration
-from hemma.stages.sight import Sight, sight_of
+from hemma.stages.observer import HomeObserver, observer_of
 from hemma.stages.train import TrainingJob
 
 Imitator = TypeVar("Imitator", bound="AbstractImitator")
@@ -48,15 +48,15 @@ class AbstractImitator(AbstractLearner):
         """The same under another label, with so many runs."""
         case = expert.case
         days = self.seen_days(case.experiment, case.training_days)
-        sight = sight_of(self.observation_model, expert, store, forecasts=self.is_taught_causally)
-        shown = self._shown(expert, store, sight, days)
-        seen = sight.learning(days)
+        observer = observer_of(self.observation_model, expert, store, forecasts=self.is_taught_causally)
+        shown = self._shown(expert, store, observer, days)
+        seen = observer.learning(days)
         return TrainingJob(
             label=label,
             algorithm=self.algorithm(case.experiment),
             task=stack([demonstrated_task(expert, shown, seed, seen) for seed in range(seeds)]),
-            basis=fingerprint("job", case.home, shown.mark, sight.mark),
-            sight=sight,
+            basis=fingerprint("job", case.home, shown.mark, observer.mark),
+            observer=observer,
         )
 
     def seen_days(self, experiment: Experiment, training_days: int) -> int:
@@ -68,7 +68,7 @@ class AbstractImitator(AbstractLearner):
         return experiment.demonstration_days
 
     def taught_causally(self: Imitator) -> Imitator:
-        """The same method, taught by the default controller, which knows no more than its pupil."""
+        """The same method, taught by the default controller, which knows no more than its policy."""
         return replace(
             self,
             name=f"{self.name} causal",
@@ -80,9 +80,9 @@ class AbstractImitator(AbstractLearner):
             is_candidate=False,
         )
 
-    def _shown(self, expert: Expert, store: Store, sight: Sight, days: int) -> Demonstration:
+    def _shown(self, expert: Expert, store: Store, observer: HomeObserver, days: int) -> Demonstration:
         if self.is_taught_causally:
-            return causal_demonstration(store, expert, sight, days)
+            return causal_demonstration(store, expert, observer, days)
         return demonstration(store, expert, days)
 
 

@@ -43,7 +43,7 @@ def measured(method: AbstractControl, evaluator: Evaluator, known: Known) -> tup
         partial(method.controller, known),
         isinstance(method, AbstractPlanner),
     )
-    return _judged(evaluator, act, method.seconds_to_fit(known))
+    return _evaluated(evaluator, act, method.seconds_to_fit(known))
 
 
 def measured_with_true_model(planner: AbstractPlanner, evaluator: Evaluator, known: Known) -> tuple[Run, ...]:
@@ -51,7 +51,7 @@ def measured_with_true_model(planner: AbstractPlanner, evaluator: Evaluator, kno
     label = f"{planner.name} with the true model"
     mark = fingerprint("true model", _mark(planner, known))
     act = _Act(label, mark, partial(planner.planner, known, evaluator.case.home, known.outlook), True)
-    return _judged(evaluator, act, planner.seconds_to_fit(known))
+    return _evaluated(evaluator, act, planner.seconds_to_fit(known))
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class _Act:
     """Whether it takes so long that its progress is told."""
 
 
-def _judged(evaluator: Evaluator, act: _Act, seconds_to_fit: float | None) -> tuple[Run, ...]:
+def _evaluated(evaluator: Evaluator, act: _Act, seconds_to_fit: float | None) -> tuple[Run, ...]:
     case, progress = evaluator.case, evaluator.store.progress
 
     def play() -> Sequence[Played]:

@@ -14,7 +14,7 @@ from hemma.results.records import (
     DemonstrationRuns,
     Identification,
     MethodRuns,
-    Optimum,
+    OptimumRecord,
     Period,
     Recommendation,
 )
@@ -35,7 +35,7 @@ class HomeResults(Record):
     comfort_c: Band
     """T^low and T^upp."""
     identification: Identification | None = None
-    optimum: Optimum | None = None
+    optimum: OptimumRecord | None = None
     recommendation: Recommendation | None = None
     demonstration_days: dict[str, Finite] = Field(default_factory=dict)
     """By method, of those that learn from demonstrations."""

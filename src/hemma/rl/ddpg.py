@@ -13,7 +13,7 @@ from hemma.rl.critic import Critic
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions, collect
 from hemma.rl.explicit import scaled_reward
-from hemma.rl.improvement import Measured, measured
+from hemma.rl.improvement import RolloutMeans, measured
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.replay_buffer import Experience, Memory, empty_memory
@@ -130,7 +130,7 @@ class DDPG:
             key=key,
         )
 
-    def iterate(self, state: DDPGState, task: Task[ExplicitReward]) -> tuple[DDPGState, Measured]:
+    def iterate(self, state: DDPGState, task: Task[ExplicitReward]) -> tuple[DDPGState, RolloutMeans]:
         """Act for a while, remember it, and learn from the memory."""
         key, act_key, learn_key = jax.random.split(state.key, 3)
         fresh, found = self._act(task, state.learned.actor, state.iteration, act_key)
@@ -145,7 +145,7 @@ class DDPG:
 
     def _act(
         self, task: Task[ExplicitReward], actor: GaussianPolicy, iteration: Array, key: Array
-    ) -> tuple[Experience, Measured]:
+    ) -> tuple[Experience, RolloutMeans]:
         deviation = self.settings.exploration.deviation(iteration, self.settings.iterations)
         shape = (self.settings.slots, self.settings.rollouts)
         rollout = collect(task.environment, actor, deviation, shape, key)

@@ -13,7 +13,7 @@ from jaxtyping import Float, Int
 from hemma.home import Home
 from hemma.home.checks import require
 from hemma.rl.environment import Environment, Rollout
-from hemma.rl.improvement import Effort, Improvement, Measured, Proximal, measured
+from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, RolloutMeans, measured
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
@@ -63,11 +63,11 @@ class ExplicitLearning:
     """A policy improved on the explicit reward: by PPO, the paper's benchmark of that name."""
 
     settings: ExplicitSettings = field(default_factory=ExplicitSettings)
-    other_improvement: Improvement | None = None
+    other_improvement: PolicyImprovement | None = None
     """What takes the place of PPO as set, if anything."""
 
     @property
-    def improvement(self) -> Improvement:
+    def improvement(self) -> PolicyImprovement:
         """How the policy is improved."""
         return self.other_improvement or Proximal(self.settings.ppo)
 
@@ -86,7 +86,7 @@ class ExplicitLearning:
         learner = self.improvement.start(learner_key, task.environment.width)
         return ExplicitState(learner, self.improvement.policy(learner), jnp.zeros((), int), key)
 
-    def iterate(self, state: ExplicitState, task: Task[ExplicitReward]) -> tuple[ExplicitState, Measured]:
+    def iterate(self, state: ExplicitState, task: Task[ExplicitReward]) -> tuple[ExplicitState, RolloutMeans]:
         """One improvement of the policy."""
         return self.improved(state, task.environment, lambda rollout: scaled_reward(rollout, task))
 
@@ -96,7 +96,7 @@ class ExplicitLearning:
         environment: Environment,
         paid: Callable[[Rollout], Array],
         scaled: Callable[[Array], Array] = lambda rewards: rewards,
-    ) -> tuple[ExplicitState, Measured]:
+    ) -> tuple[ExplicitState, RolloutMeans]:
         """One improvement of the policy on what a rollout is ``paid``, shape (slots, rollouts).
 
         What is shown is the pay as it is, what is learned from is the pay ``scaled``.

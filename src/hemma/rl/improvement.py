@@ -23,7 +23,7 @@ class Effort(eqx.Module):
     """Share of the learning rates to use, for rates that fall as training goes on."""
 
 
-class Measured(eqx.Module):
+class RolloutMeans(eqx.Module):
     """What the policy earned and cost while it was improved, as means over a slot."""
 
     reward: Float[Array, ""]
@@ -34,7 +34,7 @@ class Measured(eqx.Module):
 
 
 @runtime_checkable
-class Improvement(Protocol):
+class PolicyImprovement(Protocol):
     """A way to improve a policy; frozen and hashable. What it carries from step to step has a ``policy``."""
 
     @property
@@ -103,10 +103,10 @@ def standard(rewards: Float[Array, "slots rollouts"]) -> Float[Array, "slots rol
     return (rewards - jnp.mean(rewards)) / (jnp.std(rewards) + 1e-6)
 
 
-def measured(rollout: Rollout, rewards: Array) -> Measured:
+def measured(rollout: Rollout, rewards: Array) -> RolloutMeans:
     """Means over a rollout's slots."""
     costs = rollout.costs
-    return Measured(
+    return RolloutMeans(
         reward=jnp.mean(rewards),
         energy_cost=jnp.mean(costs.transaction + costs.ageing),
         temperature_deviation=jnp.mean(costs.temperature_deviation),

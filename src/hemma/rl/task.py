@@ -33,7 +33,7 @@ class Demonstrated(eqx.Module):
     """s'."""
 
 
-class Expert(eqx.Module):
+class ExpertData(eqx.Module):
     """A teacher who shows: demonstrations, as learners sample them."""
 
     transitions: Transitions
@@ -57,7 +57,7 @@ class ExplicitReward(eqx.Module):
 
 
 Teacher = TypeVar("Teacher", bound=eqx.Module)
-"""An ``Expert`` or an ``ExplicitReward``."""
+"""An ``ExpertData`` or an ``ExplicitReward``."""
 
 
 class Task(eqx.Module, Generic[Teacher]):
@@ -83,7 +83,7 @@ def make_task(
     demonstrated: Demonstrated,
     seed: int,
     context: Context = NOTHING,
-) -> Task[Expert]:
+) -> Task[ExpertData]:
     """The task of learning from ``demonstrated`` and the traces ``exogenous`` of the same days, nothing else.
 
     ``planning_home`` is ``home`` with an identified thermal model: it turns the learner's fractions into
@@ -109,7 +109,7 @@ def make_task(
             [scaler(jnp.asarray(demonstrated.next_states, float)), seen[1:]], axis=1
         ),
     )
-    expert = Expert(transitions, jnp.asarray(len(demonstrated.actions)))
+    expert = ExpertData(transitions, jnp.asarray(len(demonstrated.actions)))
     return Task(environment, expert, jnp.asarray(seed), _stream(exogenous))
 
 
@@ -198,7 +198,7 @@ def _stream(exogenous: Exogenous) -> UInt[Array, ""]:
 
 def _padded(task: Task[Teacher]) -> Task[Teacher]:
     def timed(task: Task) -> tuple:
-        shown = (task.teacher.transitions,) if isinstance(task.teacher, Expert) else ()
+        shown = (task.teacher.transitions,) if isinstance(task.teacher, ExpertData) else ()
         return task.environment.exogenous, task.environment.context, *shown
 
     length = room(task.environment.exogenous.slots)

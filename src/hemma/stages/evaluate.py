@@ -9,12 +9,12 @@ import jax
 from hemma.evaluation import EqualComfort, Outcome, evaluate_stacked, measure
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.results.fingerprint import code, fingerprint
-from hemma.results.records import Optimum, Run
+from hemma.results.records import OptimumRecord, Run
 from hemma.results.schedules import write_exogenous, write_schedule
 from hemma.results.store import Store
 from hemma.rl.policies.scaling import NOTHING
 from hemma.stages.case import Case
-from hemma.stages.sight import informed
+from hemma.stages.observer import informed
 from hemma.stages.train import Trained, TrainingJob
 
 STAGE = "evaluate"
@@ -72,7 +72,7 @@ class Evaluator:
 def play(case: Case, job: TrainingJob, trained: Trained) -> list[Played]:
     """One outcome a run of the job."""
     keys = jax.random.split(jax.random.key(0), job.runs)
-    context = NOTHING if job.sight is None else job.sight.in_test()
+    context = NOTHING if job.observer is None else job.observer.in_test()
     outcomes = evaluate_stacked(case.home, case.test, informed(trained.controllers, context), keys)
     return [
         Played(outcome, int(seed), trained.seconds, curve)
@@ -86,13 +86,13 @@ def at_equal_comfort(problem: OptimumProblem, deviation: float) -> EqualComfort:
     return EqualComfort(optimum.cost, no_battery.cost, max(optimum.gap, no_battery.gap))
 
 
-def plain_optimum(evaluator: Evaluator) -> Optimum:
+def plain_optimum(evaluator: Evaluator) -> OptimumRecord:
     """Perfect information with the least reachable deviation, and its proof."""
     mark = fingerprint("optimum", CODE, evaluator.case.mark)
 
     def make() -> tuple[dict, list[str]]:
         found = evaluator.problem.solve()
-        optimum = Optimum(
+        optimum = OptimumRecord(
             energy_cost=found.cost,
             mean_temperature_deviation=found.deviation / evaluator.case.test.slots,
             bound=found.bound,
@@ -100,7 +100,7 @@ def plain_optimum(evaluator: Evaluator) -> Optimum:
         )
         return optimum.model_dump(mode="json"), []
 
-    return Optimum.model_validate(evaluator.store.product("optimum", mark, make))
+    return OptimumRecord.model_validate(evaluator.store.product("optimum", mark, make))
 
 
 def _slug(label: str) -> str:

@@ -18,8 +18,8 @@ from hemma.rl.policies.policy import PolicyController
 from hemma.rl.task import Task
 from hemma.rl.training import Algorithm, Training, blank_controllers, controllers, load, save, train
 from hemma.stages.curves import write_curves
+from hemma.stages.observer import HomeObserver
 from hemma.stages.rewards import keep_rewards
-from hemma.stages.sight import Sight
 
 STAGE = "train"
 SECONDS_BETWEEN_SAVES = 20.0
@@ -36,7 +36,7 @@ class TrainingJob:
     """One run a seed, stacked."""
     basis: str
     """Fingerprint of all that the task was made from."""
-    sight: Sight | None = None
+    observer: HomeObserver | None = None
     """What the policies see besides the paper's state, if anything."""
 
     @property
@@ -67,7 +67,7 @@ class Trained:
     """Wall-clock time in which all runs were trained side by side, compilation included; of jobs trained
     together each has the share of its runs [s]."""
     mark: str
-    sight: Sight | None = None
+    observer: HomeObserver | None = None
     """What the policies see besides the paper's state, if anything."""
 
     @property
@@ -77,7 +77,7 @@ class Trained:
 
 
 @dataclass(frozen=True)
-class _Classroom:
+class _ResumableTraining:
     """A training job under way."""
 
     job: TrainingJob
@@ -177,13 +177,13 @@ def train_job(job: TrainingJob, store: Store) -> Trained:
 def _train(jobs: Sequence[TrainingJob], store: Store) -> None:
     whole = _together(jobs)
     store.progress.started(whole.label, whole.algorithm.iterations)
-    classroom = _Classroom(whole, store)
-    training, seconds = classroom.train()
+    resumable = _ResumableTraining(whole, store)
+    training, seconds = resumable.train()
     ends = list(accumulate(job.runs for job in jobs))
     for job, start, stop in zip(jobs, [0, *ends], ends, strict=False):
         part = jax.tree.map(lambda x, own=slice(start, stop): x[own], training)
         _keep(job, part, seconds * job.runs / whole.runs, store)
-    classroom.under_way.unlink(missing_ok=True)
+    resumable.under_way.unlink(missing_ok=True)
     store.progress.finished(whole.label, f"{whole.runs} runs side by side. {_message(training)}")
 
 
@@ -202,7 +202,7 @@ def _keep(job: TrainingJob, training: Training, seconds: float, store: Store) ->
     home = jax.tree.map(lambda x: x[0], job.task.environment.home)
     write_curves(store.folder, curves, training.curve, home)
     made = controllers(training, job.task, job.algorithm)
-    seen = PAPER.name if job.sight is None else job.sight.model.name
+    seen = PAPER.name if job.observer is None else job.observer.model.name
     save_tree(store.folder / file, made, {"fingerprint": job.mark, "observation_model": seen})
     rewards = keep_rewards(training, job.task, job.label, store)
     store.keep(job.label, job.mark, [file, *rewards, *curves], {"seconds": seconds})
@@ -217,7 +217,7 @@ def _taken(job: TrainingJob, store: Store) -> Trained:
         )
     like = blank_controllers(job.task, job.algorithm)
     stored = load_tree(store.folder / store.model(f"{job.label}.safetensors"), like)
-    return Trained(stored, _curves(job, store), content["seconds"], job.mark, job.sight)
+    return Trained(stored, _curves(job, store), content["seconds"], job.mark, job.observer)
 
 
 def _curves(job: TrainingJob, store: Store) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ from hemma.results.store import Store
 from hemma.rl.policies.scaling import NOTHING
 from hemma.stages.demonstrate import Expert
 from hemma.stages.folds import outlook_of, training_folds
-from hemma.stages.sight import informed
+from hemma.stages.observer import informed
 from hemma.stages.train import Trained
 
 STAGE = "recommend"
@@ -112,8 +112,8 @@ class Tryout:
 
     def _acts(self, trained: Trained, fold: Outlook) -> Sequence[Outcome]:
         keys = jax.random.split(jax.random.key(0), trained.runs)
-        sight = trained.sight
-        seen = NOTHING if sight is None else sight.held_out(fold.past.slots, fold.period.slots)
+        observer = trained.observer
+        seen = NOTHING if observer is None else observer.held_out(fold.past.slots, fold.period.slots)
         acting = informed(trained.controllers, seen)
         return evaluate_stacked(self.expert.case.home, fold.period, acting, keys)
 

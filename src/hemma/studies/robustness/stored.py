@@ -18,7 +18,7 @@ from hemma.stages.demonstrate import Expert
 from hemma.stages.identify import identified
 from hemma.stages.job import Job
 from hemma.stages.load import embedded_homes, own_home
-from hemma.stages.sight import sight_of
+from hemma.stages.observer import observer_of
 from hemma.stages.train import Trained
 from hemma.studies.robustness.records import Robustness
 from hemma.studies.robustness.trial import Trial
@@ -59,8 +59,8 @@ def stored_trial(case: Case, store: Store) -> Trial:
         controllers = load_controllers(
             store.folder / store.model(f"{method.name}.safetensors"), expert.planning_home
         )
-        sight = sight_of(method.observation_model, expert, store)
-        trained[method.name] = Trained(controllers, (), 0.0, mark, sight)
+        observer = observer_of(method.observation_model, expert, store)
+        trained[method.name] = Trained(controllers, (), 0.0, mark, observer)
     return Trial(expert, store, trained)
 
 

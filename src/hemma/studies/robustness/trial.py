@@ -28,7 +28,7 @@ from hemma.rl.policies.scaling import NOTHING, Context
 from hemma.stages.demonstrate import Expert
 from hemma.stages.evaluate import at_equal_comfort
 from hemma.stages.folds import outlook_of
-from hemma.stages.sight import informed
+from hemma.stages.observer import informed
 from hemma.stages.train import Trained
 from hemma.studies.robustness.faults import Fault, FaultSettings, faults
 from hemma.studies.robustness.records import FaultMeasures, FaultMethod, FaultRun, MetFault
@@ -105,7 +105,7 @@ class Trial:
         for method in self._controls:
             if isinstance(method, AbstractPlanner):  # plans within the limits: nothing to guard
                 planner = method.planner(self._known, self.expert.planning_home, self._read(now))
-                runs[method.name] = [_judged(None, self._run(planner, now), problem)]
+                runs[method.name] = [_evaluated(None, self._run(planner, now), problem)]
             else:
                 controller = method.controller(self._known)
                 runs[method.name] = [self._guarded(None, controller, now, problem)]
@@ -122,10 +122,10 @@ class Trial:
 
     def _seen(self, one: Trained, now: Scene) -> Context:
         """What a learned method sees besides the paper's state, as it is read."""
-        if one.sight is None:
+        if one.observer is None:
             return NOTHING
         case = self.expert.case
-        return one.sight.over(case.training, now.readings.exogenous, case.parts.test.weekdays())
+        return one.observer.over(case.training, now.readings.exogenous, case.parts.test.weekdays())
 
     @cached_property
     def _known(self) -> Known:
@@ -141,7 +141,7 @@ class Trial:
         """Behind a safety layer."""
         safety = SafetyLayer(controller, self.expert.planning_home, self._settings.margin)
         path = self._run(safety, now)
-        return _judged(seed, path, problem, path.memory.inner.inner.own)
+        return _evaluated(seed, path, problem, path.memory.inner.inner.own)
 
     def _run(self, controller: AbstractController, now: Scene) -> Trajectory:
         """By what the sensors say."""
@@ -150,7 +150,7 @@ class Trial:
         return replay_in_double(now.home, now.exogenous, sensors, disturbances=now.readings.disturbance)
 
 
-def _judged(
+def _evaluated(
     seed: int | None, path: Trajectory, problem: OptimumProblem, changed: Interventions | None = None
 ) -> FaultRun:
     """Its measures; perfect information knows the changed home, and what will disturb it."""

@@ -46,7 +46,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Place:
+class ChangedCase:
     """A changed home, in days of the training period alone: of its case, the "test" is their end."""
 
     change: Change
@@ -123,9 +123,9 @@ CHANGES = (
 """The first is where the reward is learned."""
 
 
-def places(
+def changed_cases(
     experiment: Experiment, traces: Traces, changes: Sequence[Change] = CHANGES, test_from: str | None = None
-) -> tuple[Place, ...]:
+) -> tuple[ChangedCase, ...]:
     """The changed homes, in the order of the changes.
 
     With so many days D of demonstrations and N of training, the first D days are learned from, or in the
@@ -144,8 +144,8 @@ def places(
         )
     starts = training.time_stamps()[measured * day]
 
-    def place(change: Change) -> Place:
+    def changed(change: Change) -> ChangedCase:
         days_seen = training.window(later * day if change.is_later else 0, days * day)
-        return Place(change, make_case(change.home(experiment), change.traces(days_seen), starts))
+        return ChangedCase(change, make_case(change.home(experiment), change.traces(days_seen), starts))
 
-    return tuple(place(change) for change in changes)
+    return tuple(changed(change) for change in changes)

@@ -10,21 +10,21 @@ from hemma.results.records import MethodRuns, Period
 from hemma.results.summary import bounds
 from hemma.settings.experiment import Experiment
 from hemma.settings.keys import outside
-from hemma.studies.transfer.changes import Place
+from hemma.studies.transfer.changes import ChangedCase
 from hemma.studies.transfer.records import ChangedHome, SeedPairs, Transfer
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredCase:
     """All methods in one place; the others are compared with the first, a policy from elsewhere."""
 
-    place: Place
+    changed: ChangedCase
     methods: dict[str, MethodRuns]
 
 
-def transfer_record(command: str, experiment: Experiment, measured: Sequence[Measured]) -> Transfer:
+def transfer_record(command: str, experiment: Experiment, measured: Sequence[MeasuredCase]) -> Transfer:
     """The whole file."""
-    first = measured[0].place.case
+    first = measured[0].changed.case
     return Transfer(
         hemma=hemma.__version__,
         code=CODE,
@@ -35,15 +35,15 @@ def transfer_record(command: str, experiment: Experiment, measured: Sequence[Mea
         currency=experiment.currency,
         days=experiment.demonstration_days,
         measured=Period(start=first.parts.test.time_stamps()[0], slots=first.test.slots),
-        places={one.place.change.name: _changed_home(one) for one in measured},
+        places={one.changed.change.name: _changed_home(one) for one in measured},
     )
 
 
-def _changed_home(one: Measured) -> ChangedHome:
+def _changed_home(one: MeasuredCase) -> ChangedHome:
     baseline, *others = one.methods
     return ChangedHome(
-        meaning=one.place.change.meaning,
-        learned_from=one.place.case.parts.training.time_stamps()[0],
+        meaning=one.changed.change.meaning,
+        learned_from=one.changed.case.parts.training.time_stamps()[0],
         methods=one.methods,
         paired=tuple(_paired(one.methods, other, baseline) for other in others),
     )

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from hemma.evaluation.reward_maps import (
-    Choice,
     Grid,
+    Varied,
     answers,
     outdoor_and_indoor,
     price_and_energy,
@@ -37,7 +37,7 @@ def _battery_map(origin: Origin, hour: float) -> BatteryMap:
     energies = np.linspace(float(home.battery.min_energy), float(home.battery.max_energy), ROWS)
     grid = Grid(np.linspace(low, high, COLUMNS), energies)
     moment = price_and_energy(days, hour, grid, home)
-    return BatteryMap(hour, grid, answers(origin.rewards, home, moment, Choice.BATTERY))
+    return BatteryMap(hour, grid, answers(origin.rewards, home, moment, Varied.BATTERY))
 
 
 def _comfort_map(origin: Origin) -> ComfortMap:
@@ -48,10 +48,10 @@ def _comfort_map(origin: Origin) -> ComfortMap:
     low, high = sorted([edge - inside * BEYOND, edge + 3 * inside * BEYOND])
     grid = Grid(np.linspace(outdoor.min(), outdoor.max(), COLUMNS), np.linspace(low, high, ROWS))
     moment = outdoor_and_indoor(days, HOT, grid, home)
-    tried = 3 * origin.settled.experiment.airl.exploration.first_deviation[Choice.HVAC]
-    return ComfortMap(HOT, edge, tried, grid, answers(origin.rewards, home, moment, Choice.HVAC))
+    tried = 3 * origin.settled.experiment.airl.exploration.first_deviation[Varied.HVAC]
+    return ComfortMap(HOT, edge, tried, grid, answers(origin.rewards, home, moment, Varied.HVAC))
 
 
 def _days(origin: Origin):
-    case = origin.settled.place.case
+    case = origin.settled.changed.case
     return case.first_days(case.experiment.demonstration_days)

@@ -27,8 +27,8 @@ from hemma.stages.identify import IdentifiedBuilding, identify
 from hemma.stages.job import at_work, require_long_enough
 from hemma.stages.rewards import kept_rewards
 from hemma.stages.train import Trained, TrainingJob, train_job, train_jobs
-from hemma.studies.transfer.changes import CHANGES, Change, Place, places
-from hemma.studies.transfer.document import Measured, transfer_record
+from hemma.studies.transfer.changes import CHANGES, Change, ChangedCase, changed_cases
+from hemma.studies.transfer.document import MeasuredCase, transfer_record
 from hemma.studies.transfer.maps import draw_maps
 from hemma.studies.transfer.records import TRANSFER_FILE
 from hemma.studies.transfer.report import write_transfer_report
@@ -68,13 +68,13 @@ def transfer(job: TransferJob, progress: Progress | None = None) -> dict[str, An
     Every product is kept in the folder as that of the main job is; the same call goes on where it stopped.
     """
     progress = Silence() if progress is None else progress
-    tried = places(job.experiment, job.traces, job.changes, job.test_from)
+    tried = changed_cases(job.experiment, job.traces, job.changes, job.test_from)
     require_long_enough(tried[0].case)
     with at_work(job.folder, job.command, progress):
         return _transferred(job, tried, Store(job.folder, job.traces.name, progress))
 
 
-def _transferred(job: TransferJob, tried: tuple[Place, ...], store: Store) -> dict[str, Any]:
+def _transferred(job: TransferJob, tried: tuple[ChangedCase, ...], store: Store) -> dict[str, Any]:
     settled = _settled(tried, store)
     first, *changed = settled
     own = airl_job(first)
@@ -85,7 +85,7 @@ def _transferred(job: TransferJob, tried: tuple[Place, ...], store: Store) -> di
     columns = [*_carried(origin, len(settled)), *_paid(settled, origin, store), _Column(ANEW, (None, *anew))]
     frozen = reward_jobs(settled, origin)
     measured = [
-        Measured(one.place, dict(_measured(_There(one, training_job), columns, number)))
+        MeasuredCase(one.changed, dict(_measured(_There(one, training_job), columns, number)))
         for number, (one, training_job) in enumerate(zip(settled, frozen, strict=True))
     ]
     found = transfer_record(job.command, job.experiment, measured)
@@ -138,7 +138,7 @@ def _paid(settled: list[Settled], origin: Origin, store: Store) -> list[_Column]
 
 def _measured(there: _There, columns: Sequence[_Column], number: int) -> Iterator[tuple[str, MethodRuns]]:
     """What each method does in the place of that number."""
-    evaluator = Evaluator(there.settled.place.case, there.settled.store)
+    evaluator = Evaluator(there.settled.changed.case, there.settled.store)
     for column in columns:
         trained = column.trained[number]
         if trained is not None:
@@ -150,21 +150,21 @@ def _measured(there: _There, columns: Sequence[_Column], number: int) -> Iterato
 
 def _play(settled: Settled, controllers: PolicyController, seconds: float) -> list[Played]:
     """One outcome a seed."""
-    case = settled.place.case
+    case = settled.changed.case
     keys = jax.random.split(jax.random.key(0), len(settled.seeds))
     outcomes = evaluate_stacked(case.home, case.test, controllers, keys)
     return [Played(outcome, seed, seconds) for outcome, seed in zip(outcomes, settled.seeds, strict=True)]
 
 
-def _settled(all_places: tuple[Place, ...], store: Store) -> list[Settled]:
+def _settled(all_cases: tuple[ChangedCase, ...], store: Store) -> list[Settled]:
     """Every place with its expert; the network is that of the unchanged home where the building is."""
-    old = identify(all_places[0].case, store)
-    return [_settle(place, old, store) for place in all_places]
+    old = identify(all_cases[0].case, store)
+    return [_settle(one, old, store) for one in all_cases]
 
 
-def _settle(place: Place, old: IdentifiedBuilding, store: Store) -> Settled:
-    change = place.change
+def _settle(changed: ChangedCase, old: IdentifiedBuilding, store: Store) -> Settled:
+    change = changed.change
     own = Store(store.folder, f"{store.home}/{change.slug}", store.progress)
-    expert = Expert(place.case, identify(place.case, own) if change.is_identified else old)
-    believed = expert if change.knows_building else Expert(place.case, old)
-    return Settled(place, expert, believed.planning_home, own)
+    expert = Expert(changed.case, identify(changed.case, own) if change.is_identified else old)
+    believed = expert if change.knows_building else Expert(changed.case, old)
+    return Settled(changed, expert, believed.planning_home, own)

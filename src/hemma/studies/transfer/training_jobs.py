@@ -9,9 +9,9 @@ from hemma.home import Home
 from hemma.irl.airl import AdversarialImitation
 from hemma.irl.learned_reward import LearnedReward
 from hemma.irl.reoptimise import (
-    Adaptation,
     FrozenReward,
     Inheritance,
+    InheritedReoptimisation,
     Reoptimisation,
     frozen_task,
     ground,
@@ -27,7 +27,7 @@ from hemma.rl.task import Task, explicit_task, make_task, stack
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Demonstration, Expert, demonstration
 from hemma.stages.train import Trained, TrainingJob
-from hemma.studies.transfer.changes import Place
+from hemma.studies.transfer.changes import ChangedCase
 
 COMFORT_MULTIPLE = 4.0
 """beta_T of PPO on the bill in the unit of ``comfort_prices``; set before any run, no sweep chose it."""
@@ -37,7 +37,7 @@ COMFORT_MULTIPLE = 4.0
 class Settled:
     """A place, once its building is identified."""
 
-    place: Place
+    changed: ChangedCase
     expert: Expert
     planning_home: Home
     """What counts a policy's fractions from comfort; the expert's unless the change went unnoticed."""
@@ -47,12 +47,12 @@ class Settled:
     @property
     def label(self) -> str:
         """Begins the names of its files."""
-        return self.place.change.slug
+        return self.changed.change.slug
 
     @property
     def experiment(self) -> Experiment:
         """The settings, with the changed home."""
-        return self.place.case.experiment
+        return self.changed.case.experiment
 
     @property
     def seeds(self) -> range:
@@ -66,7 +66,7 @@ class Settled:
 
     def task(self, comfort_price: float, seed: int) -> Task:
         """The task of learning from the explicit reward on the days of the demonstrations."""
-        case = self.place.case
+        case = self.changed.case
         days = case.first_days(self.experiment.demonstration_days)
         return explicit_task(self.planning_home, case.home, days, comfort_price, seed)
 
@@ -127,7 +127,7 @@ def adaptation_jobs(settled: Sequence[Settled], origin: Origin) -> list[Training
     pay = _Pay("adapted", lambda seed: Inheritance(origin.head(seed), origin.policy(seed)))
     experiment = origin.settled.experiment
     settings = ExplicitSettings(experiment.airl.iterations, experiment.airl.exploration, experiment.ppo)
-    algorithm = Adaptation(Reoptimisation(ExplicitLearning(settings)))
+    algorithm = InheritedReoptimisation(Reoptimisation(ExplicitLearning(settings)))
     training_jobs = [_frozen_job(one, origin, pay) for one in settled]
     return [replace(one, algorithm=algorithm) for one in training_jobs]
 
@@ -142,10 +142,10 @@ class _Pay:
 
 def _frozen_job(settled: Settled, origin: Origin, pay: _Pay) -> TrainingJob:
     """PPO as bold as on the bill, on what each run's learned reward pays; its scaler is carried over."""
-    battery = origin.settled.place.case.home.battery
+    battery = origin.settled.changed.case.home.battery
 
     def task(seed: int) -> Task:
-        scaler = carried_over(origin.rewards.run(seed).scaler, battery, settled.place.case.home.battery)
+        scaler = carried_over(origin.rewards.run(seed).scaler, battery, settled.changed.case.home.battery)
         return frozen_task(settled.task(0.0, seed), pay.teacher(seed), scaler)
 
     basis = fingerprint("frozen", settled.mark, origin.trained.mark, pay.name)
@@ -156,7 +156,7 @@ def _frozen_job(settled: Settled, origin: Origin, pay: _Pay) -> TrainingJob:
 
 def bill_job(settled: Settled) -> TrainingJob:
     """PPO on the explicit reward of that place, which knows its bill: what no imitator is told."""
-    case, days = settled.place.case, settled.experiment.demonstration_days
+    case, days = settled.changed.case, settled.experiment.demonstration_days
     [price] = comfort_prices(case.home, case.first_days(days), [COMFORT_MULTIPLE])
     task = stack([settled.task(float(price), seed) for seed in settled.seeds])
     basis = fingerprint("bill", settled.mark, float(price))
@@ -170,6 +170,6 @@ def carried_policies(trained: Trained, training_job: TrainingJob) -> PolicyContr
 
 
 def _demonstrated(settled: Settled, shown: Demonstration, seed: int) -> Task:
-    case = settled.place.case
+    case = settled.changed.case
     days = case.first_days(shown.days)
     return make_task(settled.planning_home, case.home, days, shown.demonstrated, seed)

@@ -22,7 +22,7 @@ from hemma.stages.causal import causal_demonstration
 from hemma.stages.demonstrate import Expert
 from hemma.stages.evaluate import play
 from hemma.stages.identify import identify
-from hemma.stages.sight import Sight
+from hemma.stages.observer import HomeObserver
 from hemma.stages.train import train_job
 from tiny_experiment import Watching, every_method, tiny_job
 
@@ -100,9 +100,9 @@ def test_a_causal_expert_shows_what_a_planner_did(case, expert):
     """Its states follow each other and have the traces' prices; published prices make it act otherwise."""
     (one, store), shown = expert, []
     for name in ("paper", "published"):
-        sight = Sight(case, Observer(MODELS[name], hourly_means))
-        shown.append(causal_demonstration(store, one, sight, 2))
-        assert causal_demonstration(store, one, sight, 2).mark == shown[-1].mark
+        observer = HomeObserver(case, Observer(MODELS[name], hourly_means))
+        shown.append(causal_demonstration(store, one, observer, 2))
+        assert causal_demonstration(store, one, observer, 2).mark == shown[-1].mark
     unpublished, published = (np.asarray(one.demonstrated.actions) for one in shown)
     assert unpublished.shape == published.shape == (47, 2)
     assert not np.allclose(unpublished, published)
@@ -112,6 +112,6 @@ def test_a_causal_expert_shows_what_a_planner_did(case, expert):
 
 
 def test_too_few_days_for_a_forecast_that_has_not_seen_them_are_said(case):
-    sight = Sight(case, Observer(MODELS["forecast"], ShapeForecast()))
+    observer = HomeObserver(case, Observer(MODELS["forecast"], ShapeForecast()))
     with pytest.raises(HemmaError, match="give longer training traces"):
-        sight.learning(6)
+        observer.learning(6)

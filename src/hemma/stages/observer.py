@@ -21,18 +21,18 @@ from hemma.types import Exogenous
 
 
 @dataclass(frozen=True)
-class Sight:
+class HomeObserver:
     """An observation model at work in the home of a case."""
 
     case: Case
-    observer: Observer
+    sees: Observer
     facts: tuple = ()
     """What the forecast depends on, by name."""
 
     @property
     def model(self) -> ObservationModel:
         """What is seen."""
-        return self.observer.model
+        return self.sees.model
 
     @property
     def mark(self) -> str:
@@ -51,7 +51,7 @@ class Sight:
         known = case.first_days(case.training_days if known_days is None else known_days)
         slots = case.first_days(days).slots
         weekdays = case.parts.training.weekdays()[:slots]
-        return self.observer.training_context(known, slots, float(case.home.slot_length), weekdays)
+        return self.sees.training_context(known, slots, float(case.home.slot_length), weekdays)
 
     def in_test(self) -> Context:
         """In the test period."""
@@ -70,10 +70,12 @@ class Sight:
             return NOTHING
         case = self.case
         outlook = Outlook(past, period, float(case.home.slot_length), case.experiment.forecast_horizon)
-        return self.observer.context(outlook, weekdays)
+        return self.sees.context(outlook, weekdays)
 
 
-def sight_of(model: ObservationModel, expert: Expert, store: Store, forecasts: bool = False) -> Sight:
+def observer_of(
+    model: ObservationModel, expert: Expert, store: Store, forecasts: bool = False
+) -> HomeObserver:
     """What a policy sees; a forecast is the one that the default controller plans with.
 
     ``forecasts`` says whether its teacher needs one where it does not.
@@ -81,11 +83,11 @@ def sight_of(model: ObservationModel, expert: Expert, store: Store, forecasts: b
     case, settings = expert.case, expert.case.experiment.default
     sells_apart = fit_selling(case.training) is None
     if not (model.forecast or forecasts):
-        observer = Observer(model, yesterday, settings.published_at, sells_apart)
-        return Sight(case, observer, (settings.published_at,))
+        sees = Observer(model, yesterday, settings.published_at, sells_apart)
+        return HomeObserver(case, sees, (settings.published_at,))
     chosen = choose_forecast(expert, store).candidate
-    observer = Observer(model, chosen.forecaster, settings.published_at, sells_apart)
-    return Sight(case, observer, (chosen.name, settings))
+    sees = Observer(model, chosen.forecaster, settings.published_at, sells_apart)
+    return HomeObserver(case, sees, (chosen.name, settings))
 
 
 def informed(controllers: PolicyController, context: Context) -> AbstractController:
