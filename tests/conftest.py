@@ -1,6 +1,7 @@
 """What every test sees: the profiles of hypothesis, quick compilation, and who runs which tests."""
 
-import jax
+import gc
+
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -9,8 +10,8 @@ settings.register_profile(
 )
 settings.load_profile("hemma")
 
-jax.config.update("jax_disable_most_optimizations", True)
-"""Most tests run each program for a moment only. Those that compare bits optimise (``companions``)."""
+gc.set_threshold(200_000, 20, 20)
+"""Tracing makes many objects that live long: look through them less often."""
 
 
 def pytest_collection_modifyitems(items):

@@ -17,7 +17,7 @@ from hemma.rl.environment import Rollout, Transitions
 from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, measured, standard
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy, log_density
-from hemma.rl.task import Task
+from hemma.rl.task import ExpertData, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
 

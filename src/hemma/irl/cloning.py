@@ -13,7 +13,7 @@ from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions
 from hemma.rl.policies.exploration import falling
 from hemma.rl.policies.policy import ACTIONS, GaussianPolicy
-from hemma.rl.task import Task
+from hemma.rl.task import ExpertData, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
 

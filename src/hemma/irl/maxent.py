@@ -19,7 +19,7 @@ from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, measured, 
 from hemma.rl.policies.exploration import Exploration, falling
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.policies.scaling import HOUR
-from hemma.rl.task import Task
+from hemma.rl.task import ExpertData, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array, PaperState
 

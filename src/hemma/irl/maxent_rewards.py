@@ -15,6 +15,7 @@ from hemma.irl.reward import ShapedReward
 from hemma.irl.reward_features import LinearReward, demonstrated_scale
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions
+from hemma.rl.task import ExpertData
 from hemma.types import Array
 
 

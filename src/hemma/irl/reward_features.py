@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from hemma.rl.environment import Transitions
 from hemma.rl.policies.scaling import HOUR
+from hemma.rl.task import ExpertData
 from hemma.types import Array, PaperState
 
 PV, LOAD, ENERGY, OUTDOOR, INDOOR, PRICE = sorted(PaperState)[:HOUR]

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from hemma.errors import HemmaError
-from hemma.irl.airl import TrainingState
+from hemma.irl.airl import ImitationState
 from hemma.irl.learned_reward import LearnedReward, load_rewards, save_rewards
 from hemma.irl.reward import ShapedReward
 from hemma.results.store import Store
@@ -14,7 +14,7 @@ from hemma.rl.training import Training
 def learned_head(training: Training) -> ShapedReward | None:
     """The heads of all runs, and of all agents of a run, stacked; None where no reward is left behind."""
     state = training.state
-    head = state.head if isinstance(state, TrainingState) else None
+    head = state.head if isinstance(state, ImitationState) else None
     return head if isinstance(head, ShapedReward) else None
 
 
