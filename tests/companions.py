@@ -1,7 +1,6 @@
 """A run of training must not depend on what is trained beside it, nor on how many cores there are."""
 
 import os
-from contextlib import contextmanager
 
 import jax
 import numpy as np
@@ -10,17 +9,6 @@ from hemma.rl import training
 from hemma.rl.task import stack
 
 
-@contextmanager
-def optimised():
-    """Compile as users do, nothing taken from before."""
-    jax.clear_caches()
-    jax.config.update("jax_disable_most_optimizations", False)
-    yield
-    jax.config.update("jax_disable_most_optimizations", True)
-    jax.clear_caches()
-
-
-@optimised()
 def assert_alone_as_among_others(task, learner, monkeypatch):
     """``task(seed, days)``: seed 0 alone on one core, and third of four, longer ones among them, on two."""
 

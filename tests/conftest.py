@@ -1,6 +1,4 @@
-"""What every test sees: the profiles of hypothesis, quick compilation, and who runs which tests."""
-
-import gc
+"""What every test sees: the profiles of hypothesis, and which process runs it."""
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -9,9 +7,6 @@ settings.register_profile(
     "hemma", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("hemma")
-
-gc.set_threshold(200_000, 20, 20)
-"""Tracing makes many objects that live long: look through them less often."""
 
 
 def pytest_collection_modifyitems(items):

@@ -68,7 +68,8 @@ def expert(case, tmp_path):
     return Expert(case, identify(case, store)), store
 
 
-def test_a_pupil_that_sees_more_is_taught_and_acts_by_what_it_sees(case, expert):
+@pytest.mark.slow
+def test_a_policy_that_sees_more_is_taught_and_acts_by_what_it_sees(case, expert):
     one, store = expert
     made = [method.training_job(one, store) for method in (CLONING, CLONING.seeing(MODELS["published"]))]
     assert [training_job.task.environment.width for training_job in made] == [8, 20]

@@ -74,6 +74,7 @@ def from_far(fifteen_days: ThermalRecord) -> Fit:
     return fit(fifteen_days, ENOUGH, jax.random.key(0), FAR)
 
 
+@pytest.mark.slow
 def test_gradient_alone_finds_the_building(from_far):
     model = from_far.model
     assert float(model.loss_share) == pytest.approx(0.3, abs=0.002)

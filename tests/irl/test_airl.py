@@ -22,7 +22,7 @@ from hemma.rl.improvement import Proximal
 from hemma.rl.policies.committee import Committee
 from hemma.rl.policies.policy import GaussianPolicy
 from hemma.rl.ppo import PPOSettings
-from hemma.rl.task import make_task, stack
+from hemma.rl.task import ExpertData, make_task, stack
 
 SMALL = AIRLSettings(
     iterations=50,
@@ -131,6 +131,7 @@ def test_padding_is_never_read():
         np.testing.assert_array_equal(a, b)
 
 
+@pytest.mark.slow
 def test_training_goes_on_from_a_file_to_the_same_result(tmp_path):
     runs = stack([task(seed=0), task(seed=1)])
     unbroken = training.train(runs, LEARNER)

@@ -74,6 +74,7 @@ def test_short_demonstrations_hold_out_a_part_of_a_day():
     assert learned.sum() == 47 - 9
 
 
+@pytest.mark.slow
 def test_an_expert_with_a_bounded_affine_law_is_found():
     """HVAC as comfort asks, full, and in between: the mean is the law where the law is within the bounds."""
     task = stack([ruled_task(hvac_law, days=10)])
@@ -86,6 +87,7 @@ def test_an_expert_with_a_bounded_affine_law_is_found():
     np.testing.assert_allclose(found[:, 1], hvac_fraction(unseen[:, 3]), atol=0.05)
 
 
+@pytest.mark.slow
 def test_the_result_is_the_best_on_the_held_out_days():
     """Labels without sense are learned by heart: the held-out loss rises again, the result stays behind."""
     task = ruled_task(price_rule, days=5)
@@ -115,6 +117,7 @@ def trained():
     return training.train(stack([ruled_task(price_rule, seed=seed) for seed in (3, 3, 4)]), LEARNER).state
 
 
+@pytest.mark.slow
 def test_battery_and_hvac_are_stopped_each_by_itself(trained):
     """The result may come from two iterations; each part has the loss that it had in its own."""
     task, state = ruled_task(price_rule), jax.tree.map(lambda x: x[0], trained)

@@ -204,7 +204,8 @@ def test_padding_is_never_read():
         np.testing.assert_array_equal(a, b)
 
 
-@pytest.mark.parametrize("build", [linear_maxent, pytest.param(neural_maxent, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("build", [linear_maxent, neural_maxent])
 def test_training_goes_on_from_a_file_to_the_same_result(build, tmp_path):
     learner, runs = build(SMALL, PPO), short_and_long()
     unbroken = training.train(runs, learner)
@@ -247,6 +248,7 @@ def acted(imitators, run, seed):
     return demonstrate(Home(), traces(4, seed), lambda o: controller(o, (), jax.random.key(0))[0])
 
 
+@pytest.mark.slow
 def test_one_step_an_idle_expert_teaches_rest(imitators):
     """What the HVAC's power is worth, it is worth at once."""
     assert float(acted(imitators, 0, seed=9).actions[:, 1].mean()) < 0.1

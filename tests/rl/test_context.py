@@ -83,6 +83,7 @@ def test_figures_for_other_days_are_refused():
         coin_task(context=told(2)[1])
 
 
+@pytest.mark.slow
 def test_a_policy_learns_what_only_the_context_tells_and_acts_by_it():
     """Cloned with the coin in sight, the battery follows another coin on other days; no state could tell."""
     learner = BehaviourCloning(CloningSettings(iterations=50, batch=64, hidden=(16,), weight_decay=0.1))

@@ -156,6 +156,7 @@ def test_state_matters_world_comfort_at_a_price_is_held():
     assert float(acted.costs.temperature_deviation[12:].mean()) < 0.3
 
 
+@pytest.mark.slow
 def test_discounting_world_the_battery_is_filled_at_night_for_the_day():
     acted = played(LEARNER, comfort_price=2.0)
     hour = np.arange(acted.action.battery_power.shape[0]) % 24

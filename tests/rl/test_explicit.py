@@ -119,6 +119,7 @@ def test_settings_without_meaning_are_refused(iterations):
         ExplicitSettings(iterations=iterations)
 
 
+@pytest.mark.slow
 def test_one_step_world_without_a_price_of_comfort_the_hvac_is_off():
     acted = played(LEARNER, comfort_price=0.0)
     assert float(acted.action.hvac_power.mean()) < 0.1

@@ -72,6 +72,7 @@ def test_it_is_scaled_by_its_own_prices_and_stands_behind_the_state():
         np.testing.assert_allclose(features, environment.scaler.observed(observe(state, now)))
 
 
+@pytest.mark.slow
 def test_a_policy_acts_by_it_on_other_days_and_off_the_disk(tmp_path):
     learner = BehaviourCloning(CloningSettings(iterations=50, batch=64, hidden=(16,), weight_decay=0.1))
     task, (days, sign) = stack([cloning_task()]), coin_export(4, seed=9)
