@@ -62,27 +62,27 @@ def is_proven(home: HomeResults) -> bool:
 
 def _gap(home: HomeResults, name: str) -> Cell:
     """Gap to optimum; whoever's perfect information is not proven, or who is it, says so."""
-    mean, interval = home.methods[name].mean, home.methods[name].interval
-    found = PERCENT.cell(mean.gap_to_optimum, interval.gap_to_optimum)
-    if (mean.reference_gap or 0.0) <= PROVEN and (name != "optimum" or is_proven(home)):
+    method = home.methods[name]
+    found = PERCENT.of(method, lambda it: it.gap_to_optimum)
+    if (method.mean.reference_gap or 0.0) <= PROVEN and (name != "optimum" or is_proven(home)):
         return found
     return Cell(found.value, " ".join(part for part in (found.detail, "not proven") if part))
 
 
 def _measures(home: HomeResults, name: str) -> tuple[Cell, ...]:
     method, currency = home.methods[name], home.currency
-    mean, interval, money_of = method.mean, method.interval, in_money(currency)
+    money_of = in_money(currency)
     return (
         Cell(str(len(method.runs)) if method.is_learned else DASH),
-        money_of.cell(mean.energy_cost, interval.energy_cost),
-        money_of.cell(mean.transaction_cost, interval.transaction_cost),
-        money_of.cell(mean.battery_cost, interval.battery_cost),
-        DEGREES.cell(mean.mean_temperature_deviation, interval.mean_temperature_deviation),
+        money_of.of(method, lambda it: it.energy_cost),
+        money_of.of(method, lambda it: it.transaction_cost),
+        money_of.of(method, lambda it: it.battery_cost),
+        DEGREES.of(method, lambda it: it.mean_temperature_deviation),
         _gap(home, name),
-        PERCENT.cell(mean.share_of_savings, interval.share_of_savings),
+        PERCENT.of(method, lambda it: it.share_of_savings),
         _interquartile_cell(method, currency),
         _worst_cell(method, currency),
-        Cell(seconds(mean.seconds_to_train)),
+        Cell(seconds(method.mean.seconds_to_train)),
     )
 
 

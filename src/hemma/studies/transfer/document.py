@@ -15,14 +15,14 @@ from hemma.studies.transfer.records import ChangedHome, SeedPairs, Transfer
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredPlace:
     """All methods in one place; the others are compared with the first, a policy from elsewhere."""
 
     place: Place
     methods: dict[str, MethodRuns]
 
 
-def transfer_record(command: str, experiment: Experiment, measured: Sequence[Measured]) -> Transfer:
+def transfer_record(command: str, experiment: Experiment, measured: Sequence[MeasuredPlace]) -> Transfer:
     """The whole file."""
     first = measured[0].place.case
     return Transfer(
@@ -39,7 +39,7 @@ def transfer_record(command: str, experiment: Experiment, measured: Sequence[Mea
     )
 
 
-def _changed_home(one: Measured) -> ChangedHome:
+def _changed_home(one: MeasuredPlace) -> ChangedHome:
     baseline, *others = one.methods
     return ChangedHome(
         meaning=one.place.change.meaning,

@@ -28,7 +28,7 @@ from hemma.stages.job import at_work, require_long_enough
 from hemma.stages.rewards import kept_rewards
 from hemma.stages.train import Trained, TrainingJob, train_job, train_jobs
 from hemma.studies.transfer.changes import CHANGES, Change, Place, places
-from hemma.studies.transfer.document import Measured, transfer_record
+from hemma.studies.transfer.document import MeasuredPlace, transfer_record
 from hemma.studies.transfer.maps import draw_maps
 from hemma.studies.transfer.records import TRANSFER_FILE
 from hemma.studies.transfer.report import write_transfer_report
@@ -85,7 +85,7 @@ def _transferred(job: TransferJob, tried: tuple[Place, ...], store: Store) -> di
     columns = [*_carried(origin, len(settled)), *_paid(settled, origin, store), _Column(ANEW, (None, *anew))]
     frozen = reward_jobs(settled, origin)
     measured = [
-        Measured(one.place, dict(_measured(_There(one, training_job), columns, number)))
+        MeasuredPlace(one.place, dict(_measured(_There(one, training_job), columns, number)))
         for number, (one, training_job) in enumerate(zip(settled, frozen, strict=True))
     ]
     found = transfer_record(job.command, job.experiment, measured)
