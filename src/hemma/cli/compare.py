@@ -82,8 +82,8 @@ def _print_disagreements(console: "Console", comparison: "FolderComparison") -> 
 def _print_methods(console: "Console", comparison: "FolderComparison") -> None:
     from hemma.report.comparison.table import METHOD_HEADINGS, home_rows
 
-    for home in comparison.homes:
-        _print_rows(console, home.home, METHOD_HEADINGS, list(home_rows(home)))
+    for name, home in comparison.homes.items():
+        _print_rows(console, name, METHOD_HEADINGS, list(home_rows(comparison.folders, home)))
         for note in home.notes:
             console.print(f"Note: {note}")
 

@@ -1,20 +1,10 @@
 """Where results folders differ in what they were made of: version, settings, data."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from hemma.report.comparison.records import Disagreement
 from hemma.results.results import HomeResults, Results
-
-
-@dataclass(frozen=True)
-class Disagreement:
-    """Something that is not the same in all folders."""
-
-    key: str
-    """``hemma`` (the version), ``code`` (its source), or a setting such as ``airl.iterations``."""
-    values: tuple[Any, ...]
-    """One a folder; None where a folder does not have it."""
 
 
 def disagreements(results: Sequence[Results]) -> tuple[Disagreement, ...]:
@@ -24,7 +14,7 @@ def disagreements(results: Sequence[Results]) -> tuple[Disagreement, ...]:
         for one in results
     ]
     keys = dict.fromkeys(key for column in columns for key in column)
-    rows = [Disagreement(key, tuple(column.get(key) for column in columns)) for key in keys]
+    rows = [Disagreement(key=key, values=tuple(column.get(key) for column in columns)) for key in keys]
     return tuple(row for row in rows if any(value != row.values[0] for value in row.values[1:]))
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from itertools import groupby
 
-from hemma.report.comparison.records import ComparedHome, FolderComparison
+from hemma.report.comparison.records import FolderComparison
 from hemma.report.comparison.table import (
     METHOD_HEADINGS,
     OVER_HOMES,
@@ -26,7 +26,7 @@ def comparison_page(comparison: FolderComparison) -> str:
         bullets(legend(comparison)),
         paragraph(READING),
         _disagreements_section(comparison),
-        *(_home_section(home) for home in comparison.homes),
+        *(_home_section(comparison, name) for name in comparison.homes),
         _over_homes_section(comparison),
     ]
     return document(title, heading(1, title), "".join(parts))
@@ -40,17 +40,17 @@ def _disagreements_section(comparison: FolderComparison) -> str:
     return (made if rows else same) + bullets(comparison.notes)
 
 
-def _home_section(home: ComparedHome) -> str:
-    made = table("Means over the runs", METHOD_HEADINGS, _groups(home_rows(home)))
-    return heading(2, home.home) + bullets(home.notes) + made
+def _home_section(comparison: FolderComparison, name: str) -> str:
+    home = comparison.homes[name]
+    rows = _groups(home_rows(comparison.folders, home))
+    return heading(2, name) + bullets(home.notes) + table("Means over the runs", METHOD_HEADINGS, rows)
 
 
 def _over_homes_section(comparison: FolderComparison) -> str:
     if not comparison.over_homes:
         return ""
-    return heading(2, "All homes") + table(
-        OVER_HOMES, OVER_HOMES_HEADINGS, _groups(over_homes_rows(comparison))
-    )
+    rows = _groups(over_homes_rows(comparison))
+    return heading(2, "All homes") + table(OVER_HOMES, OVER_HOMES_HEADINGS, rows)
 
 
 def _groups(rows: Iterable[ComparisonRow]) -> list[RowGroup]:

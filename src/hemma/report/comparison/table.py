@@ -1,14 +1,20 @@
 """A comparison of results folders as text: the same rows on the screen and in the page."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hemma.evaluation import Improvement, Metrics
-from hemma.report.comparison.records import ComparedHome, FolderComparison, MeasuredMethod, OverHomes
+from hemma.report.comparison.records import (
+    Chance,
+    ComparedHome,
+    Differences,
+    FolderComparison,
+    MeasuredMethod,
+    OverHomes,
+)
 from hemma.report.numbers import DASH, hundredths
-from hemma.report.tables.cells import CHANCE, DEGREES, NOTHING, PERCENT, Bounds, Cell, Notation, in_money
+from hemma.report.tables.cells import CHANCE, DEGREES, NOTHING, PERCENT, Cell, Notation, in_money
 
 METHOD_HEADINGS = (
     "Method",
@@ -60,22 +66,18 @@ def disagreement_rows(comparison: FolderComparison) -> list[tuple[str, ...]]:
     return [(row.key, *(_short(value) for value in row.values)) for row in comparison.disagreements]
 
 
-def home_rows(home: ComparedHome) -> Iterator[ComparisonRow]:
+def home_rows(folders: Sequence[str], home: ComparedHome) -> Iterator[ComparisonRow]:
     """A row for each method in each folder that has it."""
-    for compared in home.methods:
-        for place, found in enumerate(compared.found):
-            if found is not None:
-                yield ComparisonRow(
-                    compared.method, letter(place), _cells(found, home.currencies[place] or "")
-                )
+    for method, by_folder in home.methods.items():
+        for folder, found in by_folder.items():
+            yield ComparisonRow(method, letter(folders.index(folder)), _cells(found, home.currencies[folder]))
 
 
 def over_homes_rows(comparison: FolderComparison) -> Iterator[ComparisonRow]:
     """A row for each method in each folder but the first."""
     for found in comparison.over_homes:
-        yield ComparisonRow(
-            found.method, letter(comparison.folders.index(found.folder)), _over_homes_cells(found)
-        )
+        place = comparison.folders.index(found.folder)
+        yield ComparisonRow(found.method, letter(place), _over_homes_cells(found))
 
 
 def _short(value: Any) -> str:
@@ -84,39 +86,32 @@ def _short(value: Any) -> str:
 
 
 def _cells(found: MeasuredMethod, currency: str) -> tuple[Cell, ...]:
-    mean, interval, less = found.mean, found.interval, found.difference or Metrics()
     return (
         Cell(str(found.runs)),
-        _cell(in_money(currency), mean.energy_cost, less.energy_cost, interval.energy_cost),
-        _cell(PERCENT, mean.share_of_savings, less.share_of_savings, interval.share_of_savings),
-        _cell(PERCENT, mean.gap_to_optimum, less.gap_to_optimum, interval.gap_to_optimum),
-        _cell(
-            DEGREES,
-            mean.mean_temperature_deviation,
-            less.mean_temperature_deviation,
-            interval.mean_temperature_deviation,
-        ),
-        _improvement_cell(found.improvement),
+        _cell(found, in_money(currency), lambda it: it.energy_cost),
+        _cell(found, PERCENT, lambda it: it.share_of_savings),
+        _cell(found, PERCENT, lambda it: it.gap_to_optimum),
+        _cell(found, DEGREES, lambda it: it.mean_temperature_deviation),
+        _chance_cell(found.improvement),
     )
 
 
 def _over_homes_cells(found: OverHomes) -> tuple[Cell, ...]:
-    summary = found.share_of_savings
-    difference = Cell(_signed(summary.mean, hundredths) or DASH, PERCENT.range(summary.interval))
-    return Cell(str(len(found.homes))), difference, _improvement_cell(found.improvement)
+    share = found.share_of_savings
+    difference = Cell(_signed(share.difference, hundredths) or DASH, PERCENT.range(share.interval))
+    return Cell(str(len(found.homes))), difference, _chance_cell(found.improvement)
 
 
-def _improvement_cell(improvement: Improvement | None) -> Cell:
-    if improvement is None or improvement.probability is None:
-        return NOTHING
-    return CHANCE.cell(improvement.probability, improvement.interval)
+def _chance_cell(chance: Chance | None) -> Cell:
+    return NOTHING if chance is None else CHANCE.cell(chance.probability, chance.interval)
 
 
-def _cell(notation: Notation, mean: float | None, less: float | None, bounds: Bounds) -> Cell:
+def _cell(found: MeasuredMethod, notation: Notation, metric: Callable[[Any], Any]) -> Cell:
     """The mean, the difference to the first folder if there is one, and the interval."""
-    difference = _signed(less, notation.bare)
-    value = notation.full(mean)
-    return Cell(f"{value} ({difference})" if difference else value, notation.range(bounds))
+    difference = _signed(metric(found.difference or Differences()), notation.bare)
+    value = notation.full(metric(found.mean))
+    interval = notation.range(metric(found.interval))
+    return Cell(f"{value} ({difference})" if difference else value, interval)
 
 
 def _signed(value: float | None, written: Callable[[float | None], str]) -> str:

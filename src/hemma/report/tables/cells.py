@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hemma.evaluation import Interval, Measures
+from hemma.evaluation import Measures
 from hemma.report.numbers import DASH, decimals, degrees, fine, hundredths, money, percent
 from hemma.results.records import MethodRuns
 
-Bounds = tuple[float, float] | Interval | None
+Bounds = tuple[float, float] | None
 """Low and high end of an interval, or None where there is none."""
 Metric = Callable[[Measures[Any]], Any]
 """Which of the metrics: a number of a run or of means, two of intervals."""
@@ -40,10 +40,7 @@ class Notation:
 
     def range(self, bounds: Bounds) -> str:
         """``[low, high]``, or nothing."""
-        if bounds is None:
-            return ""
-        low, high = (bounds.low, bounds.high) if isinstance(bounds, Interval) else bounds
-        return f"[{self.bare(low)}, {self.bare(high)}]"
+        return "" if bounds is None else f"[{self.bare(bounds[0])}, {self.bare(bounds[1])}]"
 
     def cell(self, mean: float | None, bounds: Bounds = None) -> Cell:
         """The mean with its unit above its interval."""
