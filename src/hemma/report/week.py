@@ -67,17 +67,17 @@ def read_week(reader: SeriesReader, name: str, home: HomeResults, number: int = 
     first = (number - 1) * _slots_a_week(home)
     slots = min(home.test.slots - first, _slots_a_week(home))
     part = slice(first, first + slots)
-    exogenous = reader.exogenous(name, home.test.slots)
+    exogenous = reader.exogenous(name, home.test.slots, part)
     runs = {method: home.methods[method].typical_run for method in in_order(home.methods)}
     return Week(
         number=number,
-        exogenous=exogenous.part(part),
+        exogenous=exogenous,
         schedules={
-            method: reader.schedule(run.schedule, home.test.slots).part(part)
+            method: reader.schedule(run.schedule, home.test.slots, part)
             for method, run in runs.items()
             if run.schedule is not None
         },
-        posts=exogenous.clock.part(slice(first, None)).fence_posts(slots),
+        posts=exogenous.clock.fence_posts(slots, first),
     )
 
 

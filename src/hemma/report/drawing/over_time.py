@@ -5,7 +5,6 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from hemma.report.drawing.canvas import FAINT, days_below, legend_above
-from hemma.report.methods import look_of
 from hemma.report.week import Week
 from hemma.results.results import HomeResults
 
@@ -17,12 +16,6 @@ _PRICE_SHARE = 2.6
 def step_values(values: np.ndarray) -> np.ndarray:
     """Slot values at the fence posts of a step drawn from each post to the next."""
     return np.append(values, values[-1])
-
-
-def draw_line(axes: Axes, method: str, time: np.ndarray, values: np.ndarray) -> None:
-    """A method's line in its own look."""
-    look = look_of(method)
-    axes.plot(time, values, color=look.colour, linestyle=look.line, lw=1.5, label=method)  # pyright: ignore[reportArgumentType]
 
 
 def finish_week(axes: Axes, home: HomeResults, week: Week) -> None:

@@ -7,6 +7,7 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 
 from hemma.report.series import TrainingCurve
+from hemma.report.subject import Curves
 
 COST, DEVIATION = "train_energy_cost", "train_temperature_deviation"
 MOST_POINTS = 150
@@ -36,6 +37,12 @@ def spread_of(runs: list[TrainingCurve], quantity: str) -> Spread | None:
     share = thinned(having[0].share)
     values = [np.interp(share, thinned(run.share), thinned(run.quantities[quantity])) for run in having]
     return Spread(share, np.mean(values, axis=0), np.min(values, axis=0), np.max(values, axis=0))
+
+
+def spreads_of(curves: Curves, quantity: str) -> dict[str, Spread]:
+    """By method, of those that have the quantity."""
+    found = {name: spread_of(runs, quantity) for name, runs in curves.items()}
+    return {name: spread for name, spread in found.items() if spread is not None}
 
 
 def thinned(values: np.ndarray) -> np.ndarray:

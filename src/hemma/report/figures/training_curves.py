@@ -5,14 +5,13 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
-from matplotlib.ticker import FuncFormatter, NullLocator
 
-from hemma.report.drawing.canvas import INK, new_figure
-from hemma.report.drawing.spread import COST, DEVIATION, SHARE_LABEL, Spread, mark_shares, spread_of
+from hemma.report.drawing.canvas import INK, new_figure, plain_numbers
+from hemma.report.drawing.spread import COST, DEVIATION, SHARE_LABEL, Spread, mark_shares, spreads_of
 from hemma.report.figures.figure import LEARNING, HomeFigure, Words
 from hemma.report.methods import look_of
-from hemma.report.numbers import money, plain
-from hemma.report.subject import Curves, HomeSubject
+from hemma.report.numbers import money
+from hemma.report.subject import HomeSubject
 
 COLUMNS, _FEWEST_COLUMNS = 5, 3
 _OTHERS = "#C9C9C9"
@@ -22,7 +21,7 @@ _LINEAR_BELOW = 0.1
 
 def learning_figure(subject: HomeSubject) -> Figure:
     """Cost above, deviation below: a small panel a method, the others' means in grey behind it."""
-    costs, deviations = _spreads(subject.curves, COST), _spreads(subject.curves, DEVIATION)
+    costs, deviations = (spreads_of(subject.curves, quantity) for quantity in (COST, DEVIATION))
     rows = -(-max(len(costs), len(deviations)) // COLUMNS)
     figure = new_figure(9.2, 1.0 + 3.1 * rows)
     above, below = figure.subfigures(2, 1, squeeze=False).ravel()
@@ -32,16 +31,10 @@ def learning_figure(subject: HomeSubject) -> Figure:
     panels = _block(below, deviations, "Temperature deviation on the training days (°C/day)")
     for axes in panels:
         axes.set_yscale("symlog", linthresh=_LINEAR_BELOW)
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
-        axes.yaxis.set_minor_locator(NullLocator())
+        plain_numbers(axes.yaxis)
         axes.set_ylim(0.0, 1.6 * max([_LINEAR_BELOW, *_edges(deviations)]))
     below.supxlabel(SHARE_LABEL, fontsize=9.0)
     return figure
-
-
-def _spreads(curves: Curves, quantity: str) -> dict[str, Spread]:
-    found = {name: spread_of(runs, quantity) for name, runs in curves.items()}
-    return {name: spread for name, spread in found.items() if spread is not None}
 
 
 def _block(figure: SubFigure, spreads: dict[str, Spread], title: str) -> list[Axes]:
@@ -94,7 +87,7 @@ def _measured(subject: HomeSubject) -> HomeSubject | None:
 def _words(subject: HomeSubject) -> Words:
     ends = "; ".join(
         f"{name} {_last(spread, subject.home.currency)} a day"
-        for name, spread in _spreads(subject.curves, COST).items()
+        for name, spread in spreads_of(subject.curves, COST).items()
     )
     return Words(
         "Learning curves",

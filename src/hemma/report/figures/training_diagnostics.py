@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hemma.report.drawing.canvas import new_figure
-from hemma.report.drawing.spread import COST, DEVIATION, SHARE_LABEL, mark_shares, spread_of
+from hemma.report.drawing.spread import COST, DEVIATION, SHARE_LABEL, mark_shares, spreads_of
 from hemma.report.figures.figure import LEARNING, HomeFigure, Words
 from hemma.report.methods import look_of
 from hemma.report.subject import Curves
@@ -59,36 +59,28 @@ def diagnostics_figure(curves: Curves) -> Figure:
     rows = -(-len(diagnostics) // columns)
     figure = new_figure(9.2, 0.7 + 1.9 * rows)
     panels = list(figure.subplots(rows, columns, squeeze=False).ravel())
-    drawn = {
-        method
-        for axes, diagnostic in zip(panels, diagnostics, strict=False)
-        for method in _draw(axes, diagnostic, curves)
-    }
+    for axes, diagnostic in zip(panels, diagnostics, strict=False):
+        _draw(axes, diagnostic, curves)
     for axes in panels[len(diagnostics) :]:
         axes.set_axis_off()
     for axes in panels[max(0, len(diagnostics) - columns) : len(diagnostics)]:
         axes.set_xlabel(SHARE_LABEL)
-    names = [name for name in curves if name in drawn]
+    shown = {one.column for one in diagnostics}
+    names = [name for name, runs in curves.items() if any(shown & run.quantities.keys() for run in runs)]
     handles = [panels[0].plot([], [], color=look_of(n).colour, linestyle=look_of(n).line)[0] for n in names]
     figure.legend(handles, names, loc="outside upper left", ncols=6)
     return figure
 
 
-def _draw(axes: Axes, diagnostic: Diagnostic, curves: Curves) -> list[str]:
-    """Draw one quantity; the methods that have it."""
+def _draw(axes: Axes, diagnostic: Diagnostic, curves: Curves) -> None:
     axes.set_title(diagnostic.title, fontsize=9.0)
     axes.set_ylabel(diagnostic.unit, fontsize=8.0)
     axes.tick_params(labelsize=7.5)
     mark_shares(axes)
-    drawn = []
-    for name, runs in curves.items():
-        spread, look = spread_of(runs, diagnostic.column), look_of(name)
-        if spread is None:
-            continue
+    for name, spread in spreads_of(curves, diagnostic.column).items():
+        look = look_of(name)
         axes.fill_between(spread.share, spread.low, spread.high, color=look.colour, alpha=0.18, lw=0)
         axes.plot(spread.share, spread.mean, color=look.colour, linestyle=look.line, lw=1.3)
-        drawn.append(name)
-    return drawn
 
 
 def _words(curves: Curves) -> Words:

@@ -117,9 +117,10 @@ def _days(method: str, homes) -> str:
 
 def data_facts(home: HomeResults) -> list[tuple[str, str]]:
     """Where a home's data come from and how they were used."""
-    facts = [("Source", home.source or "not stated"), ("Slot length", f"{home.slot_length_h:g} h")]
-    if home.training is not None:
-        facts.append(("Training period", f"{home.training.slots} slots from {home.training.start}"))
-    facts.append(("Test period", f"{home.test.slots} slots from {home.test.start}"))
-    facts.append(("Comfort band", f"{home.comfort_c[0]:g} to {home.comfort_c[1]:g} °C"))
-    return facts
+    periods = {"Training period": home.training, "Test period": home.test}
+    return [
+        ("Source", home.source or "not stated"),
+        ("Slot length", f"{home.slot_length_h:g} h"),
+        *((name, f"{one.slots} slots from {one.start}") for name, one in periods.items() if one is not None),
+        ("Comfort band", f"{home.comfort_c[0]:g} to {home.comfort_c[1]:g} °C"),
+    ]

@@ -1,9 +1,7 @@
 """The parts of the report about one home."""
 
-from collections.abc import Callable
-
 from hemma.report import figures
-from hemma.report.figures.figure import IDENTIFICATION, Part, Picture, Section
+from hemma.report.figures.figure import IDENTIFICATION, Part, Picture
 from hemma.report.figures.regret import REGRET_SECTION
 from hemma.report.methods import main_method
 from hemma.report.numbers import SPACE, degrees, money, seconds
@@ -56,9 +54,10 @@ def _sections(part: Part, home: HomeResults, pictures: dict[str, Picture]) -> st
         members = [one for one in known if one.section == section]
         shown = [figure(pictures[one.name], one.is_wide) for one in members if one.name in pictures]
         missing = [paragraph(one.missing, "faint") for one in members if one.name not in pictures]
-        above, below = _ABOVE.get(section, _nothing), _BELOW.get(section, _nothing)
+        above = _identification(home) if section == IDENTIFICATION else ""
+        below = _regret_table(home) if section == REGRET_SECTION else ""
         grid = f'<div class="figures">{"".join(shown)}</div>' if shown else ""
-        text += heading(3, section.title) + above(home) + grid + "".join(missing) + below(home)
+        text += heading(3, section.title) + above + grid + "".join(missing) + below
     return text
 
 
@@ -112,13 +111,3 @@ def _identification(home: HomeResults) -> str:
         + table("Root mean square error", ("Horizon", "Error"), [RowGroup(rows)])
         + paragraph(f"Fitting the network took {seconds(home.identification.seconds)}.")
     )
-
-
-def _nothing(home: HomeResults) -> str:
-    return ""
-
-
-_ABOVE: dict[Section, Callable[[HomeResults], str]] = {IDENTIFICATION: _identification}
-"""What stands above the figures of a section."""
-_BELOW: dict[Section, Callable[[HomeResults], str]] = {REGRET_SECTION: _regret_table}
-"""What stands below them."""
