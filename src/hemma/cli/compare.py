@@ -52,7 +52,7 @@ def compare(folders: Folders, out: File = None, force: Force = False, json: Json
 
 
 def _print_comparison(comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import READING, legend
+    from hemma.report.comparison.page import READING, legend
 
     console = results_console()
     for line in legend(comparison):
@@ -66,7 +66,7 @@ def _print_comparison(comparison: "FolderComparison") -> None:
 
 
 def _print_disagreements(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import disagreement_rows, letter
+    from hemma.report.comparison.page import disagreement_rows, letter
 
     rows = disagreement_rows(comparison)
     if not rows:
@@ -80,7 +80,7 @@ def _print_disagreements(console: "Console", comparison: "FolderComparison") -> 
 
 
 def _print_methods(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import METHOD_HEADINGS, home_rows
+    from hemma.report.comparison.page import METHOD_HEADINGS, home_rows
 
     for name, home in comparison.homes.items():
         _print_rows(console, name, METHOD_HEADINGS, list(home_rows(comparison.folders, home)))
@@ -89,7 +89,7 @@ def _print_methods(console: "Console", comparison: "FolderComparison") -> None:
 
 
 def _print_over_homes(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import OVER_HOMES, OVER_HOMES_HEADINGS, over_homes_rows
+    from hemma.report.comparison.page import OVER_HOMES, OVER_HOMES_HEADINGS, over_homes_rows
 
     if comparison.over_homes:
         _print_rows(console, OVER_HOMES, OVER_HOMES_HEADINGS, list(over_homes_rows(comparison)))

@@ -1,22 +1,56 @@
-"""A comparison of results folders as a page that needs nothing outside itself."""
+"""A comparison of results folders as rows of text, the same on the screen and in a page that stands alone."""
 
-from collections.abc import Iterable
+import json
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby
+from typing import Any
 
-from hemma.report.comparison.records import FolderComparison
-from hemma.report.comparison.table import (
-    METHOD_HEADINGS,
-    OVER_HOMES,
-    OVER_HOMES_HEADINGS,
-    READING,
-    ComparisonRow,
-    disagreement_rows,
-    home_rows,
-    legend,
-    letter,
-    over_homes_rows,
+from hemma.report.comparison.records import (
+    Chance,
+    ComparedHome,
+    Differences,
+    FolderComparison,
+    MeasuredMethod,
+    OverHomes,
 )
+from hemma.report.numbers import DASH, hundredths
 from hemma.report.page.markup import Row, RowGroup, bullets, document, heading, paragraph, table
+from hemma.report.tables.cells import CHANCE, DEGREES, NOTHING, PERCENT, Cell, Notation, in_money
+
+METHOD_HEADINGS = (
+    "Method",
+    "Folder",
+    "Runs",
+    "Energy cost",
+    "Share of savings",
+    "Gap to optimum",
+    "Mean deviation",
+    "Better than A",
+)
+OVER_HOMES_HEADINGS = ("Method", "Folder", "Homes", "Share of savings, difference to A", "Better than A")
+READING = (
+    "A is the folder that the others are compared with: in parentheses stands the difference to it, in "
+    "brackets the 95 % interval of the mean. Better than A: how probably a run of this folder has a lower "
+    "regret (cost above perfect information with the same deviation) than a run of A; 0.5 is no difference."
+)
+OVER_HOMES = (
+    "Mean over the homes that both folders share; the interval is from home to home: it leaves out what the "
+    "homes share, such as weather, prices and building"
+)
+DISAGREEMENT_WIDTH = 60
+"""Characters of a value that is shown; longer ones are cut."""
+
+
+@dataclass(frozen=True)
+class ComparisonRow:
+    """One method, in one folder."""
+
+    method: str
+    folder: str
+    """Its letter."""
+    cells: tuple[Cell, ...]
+    """What stands below the headings from the third on."""
 
 
 def comparison_page(comparison: FolderComparison) -> str:
@@ -30,6 +64,77 @@ def comparison_page(comparison: FolderComparison) -> str:
         _over_homes_section(comparison),
     ]
     return document(title, heading(1, title), "".join(parts))
+
+
+def letter(place: int) -> str:
+    """``A`` for the first folder, which the others are compared with."""
+    return chr(ord("A") + place) if place < 26 else str(place + 1)
+
+
+def legend(comparison: FolderComparison) -> list[str]:
+    """Which letter stands for which folder."""
+    return [f"{letter(place)}  {name}" for place, name in enumerate(comparison.folders)]
+
+
+def disagreement_rows(comparison: FolderComparison) -> list[tuple[str, ...]]:
+    """What differs, and its value in each folder."""
+    return [(row.key, *(_short(value) for value in row.values)) for row in comparison.disagreements]
+
+
+def home_rows(folders: Sequence[str], home: ComparedHome) -> Iterator[ComparisonRow]:
+    """A row for each method in each folder that has it."""
+    for method, by_folder in home.methods.items():
+        for folder, found in by_folder.items():
+            yield ComparisonRow(method, letter(folders.index(folder)), _cells(found, home.currencies[folder]))
+
+
+def over_homes_rows(comparison: FolderComparison) -> Iterator[ComparisonRow]:
+    """A row for each method in each folder but the first."""
+    for found in comparison.over_homes:
+        place = comparison.folders.index(found.folder)
+        yield ComparisonRow(found.method, letter(place), _over_homes_cells(found))
+
+
+def _short(value: Any) -> str:
+    text = DASH if value is None else value if isinstance(value, str) else json.dumps(value)
+    return text if len(text) <= DISAGREEMENT_WIDTH else f"{text[: DISAGREEMENT_WIDTH - 1]}…"
+
+
+def _cells(found: MeasuredMethod, currency: str) -> tuple[Cell, ...]:
+    return (
+        Cell(str(found.runs)),
+        _cell(found, in_money(currency), lambda it: it.energy_cost),
+        _cell(found, PERCENT, lambda it: it.share_of_savings),
+        _cell(found, PERCENT, lambda it: it.gap_to_optimum),
+        _cell(found, DEGREES, lambda it: it.mean_temperature_deviation),
+        _chance_cell(found.improvement),
+    )
+
+
+def _over_homes_cells(found: OverHomes) -> tuple[Cell, ...]:
+    share = found.share_of_savings
+    difference = Cell(_signed(share.difference, hundredths) or DASH, PERCENT.range(share.interval))
+    return Cell(str(len(found.homes))), difference, _chance_cell(found.improvement)
+
+
+def _chance_cell(chance: Chance | None) -> Cell:
+    return NOTHING if chance is None else CHANCE.cell(chance.probability, chance.interval)
+
+
+def _cell(found: MeasuredMethod, notation: Notation, metric: Callable[[Any], Any]) -> Cell:
+    """The mean, the difference to the first folder if there is one, and the interval."""
+    difference = _signed(metric(found.difference or Differences()), notation.bare)
+    value = notation.full(metric(found.mean))
+    interval = notation.range(metric(found.interval))
+    return Cell(f"{value} ({difference})" if difference else value, interval)
+
+
+def _signed(value: float | None, written: Callable[[float | None], str]) -> str:
+    """``+0.40``, or nothing where there is no difference to speak of."""
+    if value is None:
+        return ""
+    text = written(value)
+    return f"+{text}" if value > 0 else text
 
 
 def _disagreements_section(comparison: FolderComparison) -> str:

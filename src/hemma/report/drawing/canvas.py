@@ -133,7 +133,7 @@ def days_below(axes: Axes, first: np.datetime64, last: np.datetime64) -> None:
     axes.set_xlim(first, last)  # pyright: ignore[reportArgumentType]
     if days <= 8:
         axes.xaxis.set_minor_locator(HourLocator(byhour=(6, 12, 18)))
-    axes.xaxis.set_major_formatter(_day_name)
+    axes.xaxis.set_major_formatter(lambda days, _: _day_name(days))
 
 
 def midnights(first: np.datetime64, last: np.datetime64) -> Shaped[np.ndarray, "days"]:
@@ -150,6 +150,6 @@ def say_nothing_to_show(axes: Axes, reason: str) -> None:
     axes.text(0.5, 0.5, reason, ha="center", va="center", transform=axes.transAxes, color=FAINT)
 
 
-def _day_name(days: float, _: float) -> str:
+def _day_name(days: float) -> str:
     moment = num2date(days)
     return f"{moment:%a} {moment.day} {moment:%b}"

@@ -1,5 +1,7 @@
 """Axes over local time: lines and steps of a week, and the buying price behind them."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
@@ -8,7 +10,7 @@ from hemma.report.drawing.canvas import FAINT, days_below, legend_above
 from hemma.report.week import Week
 from hemma.results.results import HomeResults
 
-PRICE_COLOUR = "#BDBDBD"
+PRICE_LOOK: dict[str, Any] = {"color": "#BDBDBD", "alpha": 0.6, "linewidth": 0}
 _PRICE_SHARE = 2.6
 """The price axis reaches this many times the highest price, which keeps it below the temperatures."""
 
@@ -29,8 +31,8 @@ def finish_week(axes: Axes, home: HomeResults, week: Week) -> None:
 def _shade_price(axes: Axes, home: HomeResults, week: Week) -> None:
     price = step_values(week.exogenous.buying_price)
     right = axes.twinx()
-    right.fill_between(week.posts, price, step="post", color=PRICE_COLOUR, alpha=0.6, linewidth=0)
-    axes.fill_between([], [], color=PRICE_COLOUR, alpha=0.6, linewidth=0, label="buying price (right)")
+    right.fill_between(week.posts, price, step="post", **PRICE_LOOK)
+    axes.fill_between([], [], label="buying price (right)", **PRICE_LOOK)
     lowest, highest = week.price_range
     right.set_ylim(lowest, _PRICE_SHARE * highest)
     right.set_yticks([tick for tick in MaxNLocator(3).tick_values(0.0, highest) if tick <= 1.2 * highest])

@@ -13,7 +13,7 @@ from hemma.report.drawing.rows import label_rows, method_rows, rows_height, writ
 from hemma.report.figures.figure import ReportFigure, ReportSection, Words
 from hemma.report.methods import look_of
 from hemma.report.numbers import percent
-from hemma.results.findings import Aggregated
+from hemma.results.findings import Aggregated, AggregateMethod
 from hemma.results.results import Results
 
 LOWEST = -0.5
@@ -23,28 +23,23 @@ _MARKERS = "os^DvPX*"
 
 def shares_by_home(results: Results) -> dict[str, dict[str, float]]:
     """Mean share of savings by method and home, where there is one."""
-    names = dict.fromkeys(name for home in results.finished.values() for name in home.methods)
-    return {
-        name: {
-            title: share
-            for title, home in results.finished.items()
-            if name in home.methods and (share := home.methods[name].mean.share_of_savings) is not None
-        }
-        for name in names
-    }
+    shares: dict[str, dict[str, float]] = {}
+    for title, home in results.finished.items():
+        for name, method in home.methods.items():
+            if method.mean.share_of_savings is not None:
+                shares.setdefault(name, {})[title] = method.mean.share_of_savings
+    return shares
 
 
 def over_homes(results: Results, method: str) -> Aggregated:
     """A method's share of savings over all homes; nothing where the folder does not say."""
-    aggregate = results.aggregate
-    if aggregate is None or method not in aggregate.methods:
-        return Aggregated()
-    return aggregate.methods[method].share_of_savings
+    methods = results.aggregate.methods if results.aggregate else {}
+    return methods.get(method, AggregateMethod()).share_of_savings
 
 
 def homes_figure(results: Results) -> Figure:
     """A row a method: a mark a home, and the mean over all with its interval where the folder has it."""
-    shares = {name: by_home for name, by_home in shares_by_home(results).items() if by_home}
+    shares = shares_by_home(results)
     rows = method_rows(shares)
     figure = new_figure(9.2, rows_height(shares) + 0.25)
     axes = figure.add_subplot()
@@ -103,29 +98,29 @@ def _explain(figure: Figure, axes: Axes, results: Results) -> None:
 
 
 def _words(results: Results) -> Words:
-    told = []
-    for name, by_home in shares_by_home(results).items():
-        mean = over_homes(results, name).mean
-        overall = "" if mean is None else f"{percent(mean)} over all, "
-        if by_home:
-            told.append(f"{name} {overall}{', '.join(f'{home} {percent(s)}' for home, s in by_home.items())}")
-    has_mean = any(over_homes(results, name).mean is not None for name in shares_by_home(results))
+    shares = shares_by_home(results)
+    means = {name: over_homes(results, name).mean for name in shares}
+    overall = {name: "" if mean is None else f"{percent(mean)} over all, " for name, mean in means.items()}
+    told = "; ".join(
+        f"{name} {overall[name]}{', '.join(f'{home} {percent(share)}' for home, share in by_home.items())}"
+        for name, by_home in shares.items()
+    )
     coloured = (
         "The coloured mark and the number are the mean over all homes, the bar is its 95 % interval for "
         "other seeds on the same homes. "
     )
     return Words(
         "Share of savings on every home",
-        f"Points of the share of savings: {'; '.join(told)}.",
-        f"One grey mark a home, the mean over its seeds. {coloured if has_mean else ''}Shares far below zero "
-        "are written at the left edge.",
+        f"Points of the share of savings: {told}.",
+        f"One grey mark a home, the mean over its seeds. {coloured if any(overall.values()) else ''}"
+        "Shares far below zero are written at the left edge.",
     )
 
 
 SHARE_OF_SAVINGS = ReportFigure[Results, Results](
     name="share-of-savings",
     section=ReportSection("Home by home"),
-    needs=lambda it: it if len(it.finished) > 1 and any(shares_by_home(it).values()) else None,
+    needs=lambda results: results if len(results.finished) > 1 and shares_by_home(results) else None,
     draw=homes_figure,
     words=_words,
 )

@@ -6,13 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.dates import num2date
 from matplotlib.figure import Figure
-from matplotlib.gridspec import GridSpec
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from hemma.methods.looks import GREEN
 from hemma.report.drawing.canvas import FAINT, midnights, new_figure
-from hemma.report.drawing.over_time import PRICE_COLOUR, step_values
+from hemma.report.drawing.over_time import PRICE_LOOK, step_values
 from hemma.report.figures.figure import HomeFigure, ReportSection, Words
 from hemma.report.methods import look_of
 from hemma.report.numbers import plain
@@ -33,8 +32,7 @@ _PRICE_SHARE = 0.75
 def traces_figure(home: HomeResults, week: Week) -> Figure:
     """Small multiples of all methods that have a schedule, in the order of the table, on the same scales."""
     count, schedules = len(week.schedules), week.schedules.values()
-    rows = -(-count // COLUMNS)
-    figure = new_figure(_WIDTH, _HEAD + _ROW_HEIGHT * rows + _FOOT - _GAP)
+    figure = new_figure(_WIDTH, _HEAD + _ROW_HEIGHT * -(-count // COLUMNS) + _FOOT - _GAP)
     figure.set_layout_engine("none")
     temperatures = np.concatenate([home.comfort_c, *(one.indoor_temperature for one in schedules)])
     low, high = temperatures.min(), temperatures.max()
@@ -58,10 +56,9 @@ def traces_figure(home: HomeResults, week: Week) -> Figure:
 def _cells(figure: Figure, count: int) -> Iterator[tuple[Axes, Axes]]:
     """The two panels of each method, with labels at the left and at the lower edge only."""
     width, height = figure.get_size_inches()
-    outer = GridSpec(
+    outer = figure.add_gridspec(
         -(-count // COLUMNS),
         COLUMNS,
-        figure=figure,
         left=_LEFT / width,
         right=1 - _RIGHT / width,
         top=1 - _HEAD / height,
@@ -84,8 +81,7 @@ def _cells(figure: Figure, count: int) -> Iterator[tuple[Axes, Axes]]:
 def _draw_price(axes: Axes, week: Week) -> None:
     lowest, highest = week.price_range
     price = _PRICE_SHARE * (step_values(week.exogenous.buying_price) - lowest) / (highest - lowest)
-    look = {"color": PRICE_COLOUR, "alpha": 0.6, "linewidth": 0}
-    axes.fill_between(week.posts, price, step="post", transform=axes.get_xaxis_transform(), **look)
+    axes.fill_between(week.posts, price, step="post", transform=axes.get_xaxis_transform(), **PRICE_LOOK)
 
 
 def _explain(figure: Figure, home: HomeResults, week: Week) -> None:
@@ -93,7 +89,7 @@ def _explain(figure: Figure, home: HomeResults, week: Week) -> None:
     price = f"buying price, {lowest:.2g} to {highest:.2g} {home.currency}/kWh"
     patches = [
         Patch(color=GREEN, alpha=0.2, linewidth=0, label="comfort band"),
-        Patch(color=PRICE_COLOUR, alpha=0.6, linewidth=0, label=price),
+        Patch(label=price, **PRICE_LOOK),
     ]
     figure.legend(handles=patches, loc="upper left", ncols=2)
     start = num2date(float((week.posts[0] - np.datetime64(0, "D")) / np.timedelta64(1, "D")))

@@ -80,8 +80,7 @@ def _edges(spreads: dict[str, Spread]) -> np.ndarray:
 
 def _measured(subject: HomeSubject) -> HomeSubject | None:
     """None where no run was measured on its training days."""
-    quantities = (quantity for runs in subject.curves.values() for run in runs for quantity in run.quantities)
-    return subject if {COST, DEVIATION} & set(quantities) else None
+    return subject if any(spreads_of(subject.curves, quantity) for quantity in (COST, DEVIATION)) else None
 
 
 def _words(subject: HomeSubject) -> Words:

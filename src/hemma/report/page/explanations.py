@@ -1,5 +1,7 @@
 """How to read the report: what each number means, and what it does not say."""
 
+from collections.abc import Iterable
+
 from hemma.report.comfort import REACHABLE
 from hemma.report.methods import in_order, meaning_of
 from hemma.report.numbers import DASH
@@ -96,21 +98,13 @@ def _seeds_and_intervals(results: Results) -> str:
 
 def method_meanings(results: Results) -> list[tuple[str, str]]:
     """The methods of all homes, each with what it is; the length of the demonstrations where it is known."""
-    present = in_order(
-        dict.fromkeys(
-            name
-            for home in results.finished.values()
-            for name in (*home.methods, *(runs.method for runs in home.data_efficiency))
-        )
-    )
-    return [
-        (name, meaning + _days(name, results.finished.values()))
-        for name in present
-        if (meaning := meaning_of(name)) is not None
-    ]
+    homes = results.finished.values()
+    named = (name for home in homes for name in (*home.methods, *(it.method for it in home.data_efficiency)))
+    meanings = {name: meaning_of(name) for name in in_order(dict.fromkeys(named))}
+    return [(name, text + _days(name, homes)) for name, text in meanings.items() if text is not None]
 
 
-def _days(method: str, homes) -> str:
+def _days(method: str, homes: Iterable[HomeResults]) -> str:
     days = sorted({home.demonstration_days[method] for home in homes if method in home.demonstration_days})
     return f" ({' or '.join(f'{length:g}' for length in days)} days)" if days else ""
 

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from hemma.evaluation import Metrics
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, money, percent, seconds
-from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell, in_money
-from hemma.results.records import MethodRuns
+from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell, Metric, in_money
 from hemma.results.results import HomeResults, Results, load_results
 
 TABLE_HEADINGS = (
@@ -71,7 +71,7 @@ def _gap(home: HomeResults, name: str) -> Cell:
 
 def _measures(home: HomeResults, name: str) -> tuple[Cell, ...]:
     method, currency = home.methods[name], home.currency
-    money_of = in_money(currency)
+    money_of, middle = in_money(currency), method.interquartile_mean if len(method.runs) > 1 else None
     return (
         Cell(str(len(method.runs)) if method.is_learned else DASH),
         money_of.of(method, lambda it: it.energy_cost),
@@ -80,23 +80,15 @@ def _measures(home: HomeResults, name: str) -> tuple[Cell, ...]:
         DEGREES.of(method, lambda it: it.mean_temperature_deviation),
         _gap(home, name),
         PERCENT.of(method, lambda it: it.share_of_savings),
-        _interquartile_cell(method, currency),
-        _worst_cell(method, currency),
+        _cost_beside(middle, currency, "share", lambda it: it.share_of_savings),
+        _cost_beside(method.worst_run, currency, "gap", lambda it: it.gap_to_optimum),
         Cell(seconds(method.mean.seconds_to_train)),
     )
 
 
-def _interquartile_cell(method: MethodRuns, currency: str) -> Cell:
-    middle = method.interquartile_mean
-    if len(method.runs) < 2:
+def _cost_beside(found: Metrics | None, currency: str, word: str, ratio: Metric) -> Cell:
+    """A cost with one of the ratios; a dash where there is a single run."""
+    if found is None:
         return NOTHING
-    share = "" if middle.share_of_savings is None else f"(share {percent(middle.share_of_savings)})"
-    return Cell(money(middle.energy_cost, currency), share)
-
-
-def _worst_cell(method: MethodRuns, currency: str) -> Cell:
-    worst = method.worst_run
-    if worst is None:
-        return NOTHING
-    gap = "" if worst.gap_to_optimum is None else f"(gap {percent(worst.gap_to_optimum)})"
-    return Cell(money(worst.energy_cost, currency), gap)
+    share = ratio(found)
+    return Cell(money(found.energy_cost, currency), "" if share is None else f"({word} {percent(share)})")
