@@ -1,9 +1,9 @@
 """A comparison of results folders as rows of text, the same on the screen and in a page that stands alone."""
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import chain, groupby, repeat
 from typing import Any
 
 from hemma.report.comparison.records import (
@@ -18,17 +18,6 @@ from hemma.report.numbers import DASH, hundredths
 from hemma.report.page.markup import Row, RowGroup, bullets, document, heading, paragraph, table
 from hemma.report.tables.cells import CHANCE, DEGREES, NOTHING, PERCENT, Cell, Notation, in_money
 
-METHOD_HEADINGS = (
-    "Method",
-    "Folder",
-    "Runs",
-    "Energy cost",
-    "Share of savings",
-    "Gap to optimum",
-    "Mean deviation",
-    "Better than A",
-)
-OVER_HOMES_HEADINGS = ("Method", "Folder", "Homes", "Share of savings, difference to A", "Better than A")
 READING = (
     "A is the folder that the others are compared with: in parentheses stands the difference to it, in "
     "brackets the 95 % interval of the mean. Better than A: how probably a run of this folder has a lower "
@@ -49,21 +38,8 @@ class ComparisonRow:
     method: str
     folder: str
     """Its letter."""
-    cells: tuple[Cell, ...]
-    """What stands below the headings from the third on."""
-
-
-def comparison_page(comparison: FolderComparison) -> str:
-    """The HTML of the comparison."""
-    title = f"{len(comparison.folders)} results folders side by side"
-    parts = [
-        bullets(legend(comparison)),
-        paragraph(READING),
-        _disagreements_section(comparison),
-        *(_home_section(comparison, name) for name in comparison.homes),
-        _over_homes_section(comparison),
-    ]
-    return document(title, heading(1, title), "".join(parts))
+    cells: dict[str, Cell]
+    """By heading, from the third on."""
 
 
 def letter(place: int) -> str:
@@ -81,18 +57,26 @@ def disagreement_rows(comparison: FolderComparison) -> list[tuple[str, ...]]:
     return [(row.key, *(_short(value) for value in row.values)) for row in comparison.disagreements]
 
 
-def home_rows(folders: Sequence[str], home: ComparedHome) -> Iterator[ComparisonRow]:
+def headings_of(rows: Sequence[ComparisonRow]) -> tuple[str, ...]:
+    """What stands above the rows of a table."""
+    return ("Method", "Folder", *rows[0].cells)
+
+
+def home_rows(folders: Sequence[str], home: ComparedHome) -> list[ComparisonRow]:
     """A row for each method in each folder that has it."""
-    for method, by_folder in home.methods.items():
-        for folder, found in by_folder.items():
-            yield ComparisonRow(method, letter(folders.index(folder)), _cells(found, home.currencies[folder]))
+    return [
+        ComparisonRow(method, letter(folders.index(folder)), _cells(found, home.currencies[folder]))
+        for method, by_folder in home.methods.items()
+        for folder, found in by_folder.items()
+    ]
 
 
-def over_homes_rows(comparison: FolderComparison) -> Iterator[ComparisonRow]:
+def over_homes_rows(comparison: FolderComparison) -> list[ComparisonRow]:
     """A row for each method in each folder but the first."""
-    for found in comparison.over_homes:
-        place = comparison.folders.index(found.folder)
-        yield ComparisonRow(found.method, letter(place), _over_homes_cells(found))
+    return [
+        ComparisonRow(one.method, letter(comparison.folders.index(one.folder)), _over_homes_cells(one))
+        for one in comparison.over_homes
+    ]
 
 
 def _short(value: Any) -> str:
@@ -100,21 +84,25 @@ def _short(value: Any) -> str:
     return text if len(text) <= DISAGREEMENT_WIDTH else f"{text[: DISAGREEMENT_WIDTH - 1]}…"
 
 
-def _cells(found: MeasuredMethod, currency: str) -> tuple[Cell, ...]:
-    return (
-        Cell(str(found.runs)),
-        _cell(found, in_money(currency), lambda it: it.energy_cost),
-        _cell(found, PERCENT, lambda it: it.share_of_savings),
-        _cell(found, PERCENT, lambda it: it.gap_to_optimum),
-        _cell(found, DEGREES, lambda it: it.mean_temperature_deviation),
-        _chance_cell(found.improvement),
-    )
+def _cells(found: MeasuredMethod, currency: str) -> dict[str, Cell]:
+    return {
+        "Runs": Cell(str(found.runs)),
+        "Energy cost": _cell(found, in_money(currency), lambda it: it.energy_cost),
+        "Share of savings": _cell(found, PERCENT, lambda it: it.share_of_savings),
+        "Gap to optimum": _cell(found, PERCENT, lambda it: it.gap_to_optimum),
+        "Mean deviation": _cell(found, DEGREES, lambda it: it.mean_temperature_deviation),
+        "Better than A": _chance_cell(found.improvement),
+    }
 
 
-def _over_homes_cells(found: OverHomes) -> tuple[Cell, ...]:
+def _over_homes_cells(found: OverHomes) -> dict[str, Cell]:
     share = found.share_of_savings
     difference = Cell(_signed(share.difference, hundredths) or DASH, PERCENT.range(share.interval))
-    return Cell(str(len(found.homes))), difference, _chance_cell(found.improvement)
+    return {
+        "Homes": Cell(str(len(found.homes))),
+        "Share of savings, difference to A": difference,
+        "Better than A": _chance_cell(found.improvement),
+    }
 
 
 def _chance_cell(chance: Chance | None) -> Cell:
@@ -137,6 +125,19 @@ def _signed(value: float | None, written: Callable[[float | None], str]) -> str:
     return f"+{text}" if value > 0 else text
 
 
+def comparison_page(comparison: FolderComparison) -> str:
+    """The HTML of the comparison."""
+    title = f"{len(comparison.folders)} results folders side by side"
+    parts = [
+        bullets(legend(comparison)),
+        paragraph(READING),
+        _disagreements_section(comparison),
+        *(_home_section(comparison, name) for name in comparison.homes),
+        _over_homes_section(comparison),
+    ]
+    return document(title, heading(1, title), "".join(parts))
+
+
 def _disagreements_section(comparison: FolderComparison) -> str:
     rows = [Row(key, texts) for key, *texts in disagreement_rows(comparison)]
     letters = [letter(place) for place in range(len(comparison.folders))]
@@ -147,20 +148,19 @@ def _disagreements_section(comparison: FolderComparison) -> str:
 
 def _home_section(comparison: FolderComparison, name: str) -> str:
     home = comparison.homes[name]
-    rows = _groups(home_rows(comparison.folders, home))
-    return heading(2, name) + bullets(home.notes) + table("Means over the runs", METHOD_HEADINGS, rows)
+    made = _grouped("Means over the runs", home_rows(comparison.folders, home))
+    return heading(2, name) + bullets(home.notes) + made
 
 
 def _over_homes_section(comparison: FolderComparison) -> str:
-    if not comparison.over_homes:
-        return ""
-    rows = _groups(over_homes_rows(comparison))
-    return heading(2, "All homes") + table(OVER_HOMES, OVER_HOMES_HEADINGS, rows)
+    rows = over_homes_rows(comparison)
+    return heading(2, "All homes") + _grouped(OVER_HOMES, rows) if rows else ""
 
 
-def _groups(rows: Iterable[ComparisonRow]) -> list[RowGroup]:
-    """One group of rows a method, its name in the first."""
-    return [
-        RowGroup([Row("" if place else method, (one.folder, *one.cells)) for place, one in enumerate(group)])
-        for method, group in groupby(rows, key=lambda one: one.method)
-    ]
+def _grouped(caption: str, rows: Sequence[ComparisonRow]) -> str:
+    """A table with one group of rows a method, its name in the first."""
+    groups = []
+    for method, group in groupby(rows, key=lambda one: one.method):
+        names = chain([method], repeat(""))
+        groups.append(RowGroup([Row(next(names), (one.folder, *one.cells.values())) for one in group]))
+    return table(caption, headings_of(rows), groups)

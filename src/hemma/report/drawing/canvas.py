@@ -139,9 +139,8 @@ def days_below(axes: Axes, first: np.datetime64, last: np.datetime64) -> None:
 def midnights(first: np.datetime64, last: np.datetime64) -> Shaped[np.ndarray, "days"]:
     """All midnights from ``first`` to ``last``."""
     day = np.timedelta64(1, "D")
-    midnight = first.astype("datetime64[D]")
-    every = np.arange(midnight if midnight >= first else midnight + day, last + day, day)
-    return every[every <= last]
+    every = np.arange(first.astype("datetime64[D]"), last + day, day)
+    return every[(every >= first) & (every <= last)]
 
 
 def say_nothing_to_show(axes: Axes, reason: str) -> None:

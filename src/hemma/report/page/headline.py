@@ -11,16 +11,6 @@ from hemma.results.records import MethodRuns
 from hemma.results.results import HomeResults
 
 DEFAULT = "default"
-GLANCE_HEADINGS = (
-    "Home",
-    "Method",
-    "Energy cost",
-    "Rule",
-    "Perfect information",
-    "Share of savings",
-    "Gap to optimum",
-    "Mean deviation",
-)
 
 
 @dataclass(frozen=True)
@@ -133,20 +123,20 @@ def _date(start: str) -> str:
     return f"{moment.day} {moment:%B %Y}"
 
 
-def summary_cells(home: HomeResults) -> tuple[str, ...]:
-    """What stands below ``GLANCE_HEADINGS`` from the second on."""
+def at_a_glance(home: HomeResults) -> dict[str, str]:
+    """The main method beside Rule and perfect information, by heading."""
     subject = main_method(home.methods)
     mean = home.methods[subject].mean
-    best = home.optimum.energy_cost if home.optimum else None
-    return (
-        subject,
-        _cost(home, subject),
-        _cost(home, "Rule"),
-        money(best, home.currency) + ("" if is_proven(home) else " (not proven)"),
-        percent(mean.share_of_savings),
-        percent(mean.gap_to_optimum),
-        degrees(mean.mean_temperature_deviation),
-    )
+    best = money(home.optimum.energy_cost if home.optimum else None, home.currency)
+    return {
+        "Method": subject,
+        "Energy cost": _cost(home, subject),
+        "Rule": _cost(home, "Rule"),
+        "Perfect information": best if is_proven(home) else f"{best} (not proven)",
+        "Share of savings": percent(mean.share_of_savings),
+        "Gap to optimum": percent(mean.gap_to_optimum),
+        "Mean deviation": degrees(mean.mean_temperature_deviation),
+    }
 
 
 def range_of_shares(homes: list[HomeResults]) -> str:

@@ -61,9 +61,10 @@ def bullets(items: Iterable[str]) -> str:
     return f"<ul>{listed}</ul>" if listed else ""
 
 
-def definitions(entries: Iterable[tuple[str, str]]) -> str:
+def definitions(meanings: Mapping[str, str]) -> str:
     """Terms and what they mean."""
-    return "<dl>" + "".join(f"<dt>{escape(a)}</dt><dd>{escape(b)}</dd>" for a, b in entries) + "</dl>"
+    terms = (f"<dt>{escape(term)}</dt><dd>{escape(text)}</dd>" for term, text in meanings.items())
+    return f"<dl>{''.join(terms)}</dl>"
 
 
 def by_group(rows: Mapping[str, Iterable[Cell | str]], main: str = "") -> list[RowGroup]:
