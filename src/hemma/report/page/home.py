@@ -18,7 +18,7 @@ from hemma.report.page.markup import (
     table,
 )
 from hemma.report.tables.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
-from hemma.report.tables.results import TABLE_HEADINGS, TableRow, is_proven
+from hemma.report.tables.results import TableRow, is_proven
 from hemma.results.results import HomeResults
 
 REGRET_HEADINGS = ("Method", "Regret", "Not knowing the future", "Identified thermal model", "Policy")
@@ -26,9 +26,10 @@ REGRET_HEADINGS = ("Method", "Regret", "Not knowing the future", "Identified the
 
 def results_part(name: str, home: HomeResults, rows: list[TableRow], pictures: dict[str, Picture]) -> str:
     """The table, the figures of what the methods did, and which of them the home should have."""
-    found = by_group({row.method: row.measures for row in rows}, main_method(home.methods))
+    found = by_group({row.method: row.measures.values() for row in rows}, main_method(home.methods))
+    headings = ("Method", *rows[0].measures)
     return (
-        table("Mean over the seeds [95 % interval for other seeds]", TABLE_HEADINGS, found)
+        table("Mean over the seeds [95 % interval for other seeds]", headings, found)
         + _optimum_line(home)
         + _sections(Part.RESULTS, home, pictures)
         + recommendation_section(name, home)

@@ -9,19 +9,6 @@ from hemma.report.numbers import DASH, money, percent, seconds
 from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell, Metric, in_money
 from hemma.results.results import HomeResults, Results, load_results
 
-TABLE_HEADINGS = (
-    "Method",
-    "Seeds",
-    "Energy cost",
-    "Trading X1",
-    "Battery X2",
-    "Mean deviation",
-    "Gap to optimum",
-    "Share of savings",
-    "Interquartile mean",
-    "Worst seed",
-    "Training time",
-)
 PROVEN = 1e-6
 """A relative gap between cost and lower bound up to this is a proof."""
 
@@ -32,12 +19,8 @@ class TableRow:
 
     home: str
     method: str
-    measures: tuple[Cell, ...]
-    """What stands below ``TABLE_HEADINGS`` from the second on."""
-
-    def under(self, heading: str) -> Cell:
-        """The cell below that one of ``TABLE_HEADINGS``, which is not the first."""
-        return self.measures[TABLE_HEADINGS.index(heading) - 1]
+    measures: dict[str, Cell]
+    """By heading."""
 
 
 def results_table(source: Path | Results) -> list[TableRow]:
@@ -69,21 +52,21 @@ def _gap(home: HomeResults, name: str) -> Cell:
     return Cell(found.value, " ".join(part for part in (found.detail, "not proven") if part))
 
 
-def _measures(home: HomeResults, name: str) -> tuple[Cell, ...]:
+def _measures(home: HomeResults, name: str) -> dict[str, Cell]:
     method, currency = home.methods[name], home.currency
     money_of, middle = in_money(currency), method.interquartile_mean if len(method.runs) > 1 else None
-    return (
-        Cell(str(len(method.runs)) if method.is_learned else DASH),
-        money_of.of(method, lambda it: it.energy_cost),
-        money_of.of(method, lambda it: it.transaction_cost),
-        money_of.of(method, lambda it: it.battery_cost),
-        DEGREES.of(method, lambda it: it.mean_temperature_deviation),
-        _gap(home, name),
-        PERCENT.of(method, lambda it: it.share_of_savings),
-        _cost_beside(middle, currency, "share", lambda it: it.share_of_savings),
-        _cost_beside(method.worst_run, currency, "gap", lambda it: it.gap_to_optimum),
-        Cell(seconds(method.mean.seconds_to_train)),
-    )
+    return {
+        "Seeds": Cell(str(len(method.runs)) if method.is_learned else DASH),
+        "Energy cost": money_of.of(method, lambda it: it.energy_cost),
+        "Trading X1": money_of.of(method, lambda it: it.transaction_cost),
+        "Battery X2": money_of.of(method, lambda it: it.battery_cost),
+        "Mean deviation": DEGREES.of(method, lambda it: it.mean_temperature_deviation),
+        "Gap to optimum": _gap(home, name),
+        "Share of savings": PERCENT.of(method, lambda it: it.share_of_savings),
+        "Interquartile mean": _cost_beside(middle, currency, "share", lambda it: it.share_of_savings),
+        "Worst seed": _cost_beside(method.worst_run, currency, "gap", lambda it: it.gap_to_optimum),
+        "Training time": Cell(seconds(method.mean.seconds_to_train)),
+    }
 
 
 def _cost_beside(found: Metrics | None, currency: str, word: str, ratio: Metric) -> Cell:
