@@ -15,12 +15,12 @@ from hemma.evaluation import Intervals
 from hemma.methods import METHODS
 from hemma.report import write_report
 from hemma.report.drawing.canvas import drawing_style, new_figure, save, single
-from hemma.report.drawing.spread import thinned
 from hemma.report.figures import FIGURES
 from hemma.report.figures.figure import HomeFigure, ReportSection, Words
 from hemma.report.figures.panels.demonstrations import draw_cost_by_length, draw_deviation_by_length
 from hemma.report.figures.panels.methods import draw_costs, draw_deviations
 from hemma.report.figures.panels.week import draw_battery_level, draw_indoor_temperature
+from hemma.report.figures.training import thinned
 from hemma.report.methods import look_of
 from hemma.report.pictures import LIST_FILE
 from hemma.report.series import SeriesReader

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from hemma.report.drawing.canvas import FAINT, days_below, legend_above
-from hemma.report.week import Week
+from hemma.report.subject import Week
 from hemma.results.results import HomeResults
 
 PRICE_LOOK: dict[str, Any] = {"color": "#BDBDBD", "alpha": 0.6, "linewidth": 0}

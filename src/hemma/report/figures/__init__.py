@@ -1,4 +1,4 @@
-"""Every figure of the report, one module each: a new one is a module and a line in one of the tuples."""
+"""Every figure of the report: a new one is a module and a line in one of the tuples."""
 
 from typing import Any
 
@@ -13,8 +13,7 @@ from hemma.report.figures.probability_of_improvement import IMPROVEMENT_OVER_HOM
 from hemma.report.figures.regret import REGRET
 from hemma.report.figures.share_of_savings import SHARE_OF_SAVINGS
 from hemma.report.figures.traces_week import TRACES_WEEK
-from hemma.report.figures.training_curves import TRAINING_CURVES
-from hemma.report.figures.training_diagnostics import TRAINING_DIAGNOSTICS
+from hemma.report.figures.training import TRAINING_CURVES, TRAINING_DIAGNOSTICS
 from hemma.report.subject import HomeSubject
 from hemma.results.results import Results
 

@@ -15,8 +15,7 @@ from hemma.report.drawing.over_time import PRICE_LOOK, step_values
 from hemma.report.figures.figure import HomeFigure, ReportSection, Words
 from hemma.report.methods import look_of
 from hemma.report.numbers import plain
-from hemma.report.subject import HomeSubject
-from hemma.report.week import Week
+from hemma.report.subject import HomeSubject, Week
 from hemma.results.results import HomeResults
 
 COLUMNS = 3

@@ -10,8 +10,7 @@ from hemma.report.drawing.over_time import finish_week, step_values
 from hemma.report.figures.figure import PANELS, HomeFigure, Words, listed
 from hemma.report.methods import look_of
 from hemma.report.numbers import plain
-from hemma.report.subject import HomeSubject
-from hemma.report.week import Week, battery_rests
+from hemma.report.subject import HomeSubject, Week, battery_rests
 from hemma.results.results import HomeResults
 
 
