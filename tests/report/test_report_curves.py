@@ -4,12 +4,17 @@ import numpy as np
 import pytest
 
 from hemma.report.drawing.canvas import drawing_style, save
-from hemma.report.drawing.spread import COST, DEVIATION, spread_of
-from hemma.report.figures.training_curves import TRAINING_CURVES, learning_figure
-from hemma.report.figures.training_diagnostics import diagnostics_figure, diagnostics_of
+from hemma.report.figures.training import (
+    COST,
+    DEVIATION,
+    TRAINING_CURVES,
+    diagnostics_figure,
+    diagnostics_of,
+    learning_figure,
+    spread_of,
+)
 from hemma.report.series import SeriesReader, TrainingCurve
-from hemma.report.subject import HomeSubject
-from hemma.report.week import read_week
+from hemma.report.subject import HomeSubject, read_week
 from hemma.results.results import load_results
 
 

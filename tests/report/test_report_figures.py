@@ -15,15 +15,12 @@ from hemma.evaluation import Intervals
 from hemma.methods import METHODS
 from hemma.report import write_report
 from hemma.report.drawing.canvas import drawing_style, new_figure, save, single
-from hemma.report.drawing.spread import thinned
 from hemma.report.figures import FIGURES
-from hemma.report.figures.figure import HomeFigure, Section, Words
-from hemma.report.figures.panels.battery_level import draw_battery_level
-from hemma.report.figures.panels.cost_by_demonstrations import draw_cost_by_length
-from hemma.report.figures.panels.deviation_by_demonstrations import draw_deviation_by_length
-from hemma.report.figures.panels.energy_cost import draw_costs
-from hemma.report.figures.panels.indoor_temperature import draw_indoor_temperature
-from hemma.report.figures.panels.temperature_deviation import draw_deviations
+from hemma.report.figures.figure import HomeFigure, ReportSection, Words
+from hemma.report.figures.panels.demonstrations import draw_cost_by_length, draw_deviation_by_length
+from hemma.report.figures.panels.methods import draw_costs, draw_deviations
+from hemma.report.figures.panels.week import draw_battery_level, draw_indoor_temperature
+from hemma.report.figures.training import thinned
 from hemma.report.methods import look_of
 from hemma.report.pictures import LIST_FILE
 from hemma.report.series import SeriesReader
@@ -261,7 +258,7 @@ def test_a_made_up_figure_is_one_module_and_one_line(small, monkeypatch):
 
     made_up = HomeFigure[HomeResults](
         name="made-up",
-        section=Section("A section of its own"),
+        section=ReportSection("A section of its own"),
         needs=lambda subject: subject.home if "Rule" in subject.home.methods else None,
         draw=draw,
         words=lambda home: Words("Made up", f"Nothing of {len(home.methods)} methods.", "Seen, and said."),

@@ -8,10 +8,10 @@ from synthetic_results import save_results
 from hemma.errors import HemmaError
 from hemma.report import write_report
 from hemma.report.drawing.canvas import drawing_style
-from hemma.report.figures.panels.indoor_temperature import draw_indoor_temperature
+from hemma.report.figures.panels.week import draw_indoor_temperature
 from hemma.report.figures.traces_week import traces_figure
 from hemma.report.series import SeriesReader
-from hemma.report.week import Week, read_week
+from hemma.report.subject import Week, read_week
 from hemma.results.results import HomeResults, load_results
 
 NAME = "austin2021-1"

@@ -13,13 +13,14 @@ if TYPE_CHECKING:
 def print_aggregate(console: "Console", results: "Results") -> None:
     """A row a method: the mean over homes and seeds; nothing for a single home."""
     from hemma.report.methods import in_order
-    from hemma.report.tables.aggregate import AGGREGATE_HEADINGS, INTERVALS, aggregate_rows
+    from hemma.report.tables.aggregate import INTERVALS, aggregate_rows
 
     rows = aggregate_rows(results)
     if not rows or results.aggregate is None:
         return
-    table = ruled(f"All {len(results.aggregate.homes)} homes: means over homes and seeds", AGGREGATE_HEADINGS)
+    headings = ("Method", *next(iter(rows.values())))
+    table = ruled(f"All {len(results.aggregate.homes)} homes: means over homes and seeds", headings)
     table.caption = INTERVALS
     for method in in_order(rows):
-        table.add_row(method, *(f"{cell.value}\n{cell.detail}".strip() for cell in rows[method]))
+        table.add_row(method, *(f"{cell.value}\n{cell.detail}".strip() for cell in rows[method].values()))
     console.print(table)

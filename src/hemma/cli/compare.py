@@ -11,6 +11,7 @@ from hemma.cli.files import Force, named, require_new
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from hemma.report.comparison.page import ComparisonRow
     from hemma.report.comparison.records import FolderComparison
 
 Folders = Annotated[
@@ -52,7 +53,7 @@ def compare(folders: Folders, out: File = None, force: Force = False, json: Json
 
 
 def _print_comparison(comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import READING, legend
+    from hemma.report.comparison.page import READING, legend
 
     console = results_console()
     for line in legend(comparison):
@@ -66,7 +67,7 @@ def _print_comparison(comparison: "FolderComparison") -> None:
 
 
 def _print_disagreements(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import disagreement_rows, letter
+    from hemma.report.comparison.page import disagreement_rows, letter
 
     rows = disagreement_rows(comparison)
     if not rows:
@@ -80,28 +81,30 @@ def _print_disagreements(console: "Console", comparison: "FolderComparison") -> 
 
 
 def _print_methods(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import METHOD_HEADINGS, home_rows
+    from hemma.report.comparison.page import home_rows
 
-    for home in comparison.homes:
-        _print_rows(console, home.home, METHOD_HEADINGS, list(home_rows(home)))
+    for name, home in comparison.homes.items():
+        _print_rows(console, name, home_rows(comparison.folders, home))
         for note in home.notes:
             console.print(f"Note: {note}")
 
 
 def _print_over_homes(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.table import OVER_HOMES, OVER_HOMES_HEADINGS, over_homes_rows
+    from hemma.report.comparison.page import OVER_HOMES, over_homes_rows
 
     if comparison.over_homes:
-        _print_rows(console, OVER_HOMES, OVER_HOMES_HEADINGS, list(over_homes_rows(comparison)))
+        _print_rows(console, OVER_HOMES, over_homes_rows(comparison))
 
 
-def _print_rows(console: "Console", title: str, headings: tuple[str, ...], rows: list) -> None:
-    table = ruled(title, headings, left=2)
+def _print_rows(console: "Console", title: str, rows: "list[ComparisonRow]") -> None:
+    from hemma.report.comparison.page import headings_of
+
+    table = ruled(title, headings_of(rows), left=2)
     last = ""
     for row in rows:
         if last and row.method != last:
             table.add_section()
-        texts = [f"{cell.value}\n{cell.detail}".strip() for cell in row.cells]
+        texts = [f"{cell.value}\n{cell.detail}".strip() for cell in row.cells.values()]
         table.add_row("" if row.method == last else row.method, row.folder, *texts)
         last = row.method
     console.print(table)

@@ -160,7 +160,7 @@ def print_table(folder: Path) -> None:
         table = ruled(f"{home}: mean of the runs, and its 95 % interval", ("Method", *COLUMNS))
         for row in rows:
             if row.home == home:
-                cells = [row.under(heading) for heading in COLUMNS]
+                cells = [row.measures[heading] for heading in COLUMNS]
                 table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in cells))
         console.print(table)
     print_aggregate(console, results)

@@ -2,6 +2,6 @@
 
 from hemma.report.report import write_report
 from hemma.report.tables.cells import Cell
-from hemma.report.tables.results import TABLE_HEADINGS, TableRow, results_table
+from hemma.report.tables.results import TableRow, results_table
 
-__all__ = ["TABLE_HEADINGS", "Cell", "TableRow", "results_table", "write_report"]
+__all__ = ["Cell", "TableRow", "results_table", "write_report"]

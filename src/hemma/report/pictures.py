@@ -41,8 +41,7 @@ class Shelf:
         """Write the figures that the subject has all for as PNG and SVG, ``prefix`` before their names."""
         pictures = {}
         for figure in known:
-            need = figure.needs(subject)
-            if need is not None:
+            if (need := figure.needs(subject)) is not None:
                 svg = save(figure.draw(need), self.folder, f"{prefix}{figure.name}")
                 pictures[figure.name] = Picture(svg, figure.words(need))
                 self.written.extend(f"{prefix}{figure.name}.{ending}" for ending in ("png", "svg"))

@@ -10,6 +10,8 @@ from jaxtyping import Float, Shaped
 
 from hemma.errors import HemmaError
 
+WHOLE = slice(None)
+
 
 @dataclass(frozen=True)
 class LocalTime:
@@ -20,13 +22,9 @@ class LocalTime:
     offset: str
     """Such as ``UTC-06:00``."""
 
-    def part(self, slots: slice) -> "LocalTime":
-        """The time of some slots."""
-        return LocalTime(self.start[slots], self.offset)
-
-    def fence_posts(self, slots: int) -> Shaped[np.ndarray, "posts"]:
-        """The first ``slots`` starts and the end of the last of them."""
-        begin = self.start[: slots + 1]
+    def fence_posts(self, slots: int, first: int = 0) -> Shaped[np.ndarray, "posts"]:
+        """The starts of ``slots`` slots from the ``first`` on, and the end of the last of them."""
+        begin = self.start[first : first + slots + 1]
         if len(begin) > slots:
             return begin
         return np.append(begin, begin[-1] + (begin[-1] - begin[-2] if len(begin) > 1 else 0))
@@ -34,21 +32,16 @@ class LocalTime:
 
 @dataclass(frozen=True)
 class ExogenousSeries:
-    """What the home did not decide in the test period."""
+    """What the home did not decide in some slots of the test period."""
 
     clock: LocalTime
+    """Of the whole period."""
     pv_generation: Float[np.ndarray, "slots"]
     """[kW]."""
     load: Float[np.ndarray, "slots"]
     """[kW]."""
     buying_price: Float[np.ndarray, "slots"]
     """[currency/kWh]."""
-
-    def part(self, slots: slice) -> "ExogenousSeries":
-        """The series of some slots."""
-        return ExogenousSeries(
-            self.clock.part(slots), self.pv_generation[slots], self.load[slots], self.buying_price[slots]
-        )
 
 
 @dataclass(frozen=True)
@@ -61,12 +54,6 @@ class ScheduleSeries:
     """[degC]."""
     grid_power: Float[np.ndarray, "slots"]
     """[kW], buying positive."""
-
-    def part(self, slots: slice) -> "ScheduleSeries":
-        """The series of some slots."""
-        return ScheduleSeries(
-            self.battery_energy[slots], self.indoor_temperature[slots], self.grid_power[slots]
-        )
 
 
 @dataclass(frozen=True)
@@ -112,17 +99,16 @@ class SeriesReader:
             )
         return path
 
-    def exogenous(self, home: str, slots: int) -> ExogenousSeries:
-        """The exogenous series of a home's test period of ``slots`` slots."""
-        table = self._table(f"schedules/{home}/exogenous.csv", "time", "pv_kw", "load_kw", "buy_per_kwh")
-        pv, load, price = table.of_slots(slots, "pv_kw", "load_kw", "buy_per_kwh")
-        return ExogenousSeries(table.clock(), pv, load, price)
+    def exogenous(self, home: str, slots: int, part: slice = WHOLE) -> ExogenousSeries:
+        """A part of the exogenous series of a home's test period of ``slots`` slots."""
+        columns = ("pv_kw", "load_kw", "buy_per_kwh")
+        table = self._table(f"schedules/{home}/exogenous.csv", "time", *columns)
+        return ExogenousSeries(table.clock(), *table.of_slots(slots, part, *columns))
 
-    def schedule(self, name: str, slots: int) -> ScheduleSeries:
-        """A schedule of ``slots`` slots."""
-        table = self._table(name, "time", "battery_kwh", "indoor_c", "grid_kw")
-        energy, temperature, grid = table.of_slots(slots, "battery_kwh", "indoor_c", "grid_kw")
-        return ScheduleSeries(energy, temperature, grid)
+    def schedule(self, name: str, slots: int, part: slice = WHOLE) -> ScheduleSeries:
+        """A part of a schedule of ``slots`` slots."""
+        columns = ("battery_kwh", "indoor_c", "grid_kw")
+        return ScheduleSeries(*self._table(name, "time", *columns).of_slots(slots, part, *columns))
 
     def free_run(self, name: str) -> FreeRun:
         """A free run of the identified network."""
@@ -167,27 +153,26 @@ class _Table:
         except ValueError as error:
             raise HemmaError(f"{self.path}: expected numbers in the column {column}: {error}") from error
 
-    def of_slots(self, slots: int, *columns: str) -> list[np.ndarray]:
+    def of_slots(self, slots: int, part: slice, *columns: str) -> list[np.ndarray]:
         if len(self.content) != slots:
             raise HemmaError(
                 f"{self.path}: expected {slots} rows, one a slot of the test period, found "
                 f"{len(self.content)}. The folder mixes two experiments: run `hemma reproduce` again"
             )
-        return [self.numbers(column) for column in columns]
+        return [self.numbers(column)[part] for column in columns]
 
     def clock(self) -> LocalTime:
         path, column = self.path, self.content["time"]
         try:
             moments = pd.to_datetime(column, format="ISO8601", utc=True)
-            offset = datetime.fromisoformat(str(column.iloc[0])).utcoffset()
+            first = datetime.fromisoformat(str(column.iloc[0]))
         except (ValueError, IndexError) as error:
             raise HemmaError(f"{path}: expected ISO 8601 time stamps in the column time: {error}") from error
-        if offset is None:
+        if first.tzinfo is None:
             raise HemmaError(
                 f"{path}: expected time stamps with an offset such as 2021-08-01T00:00:00-06:00, "
                 f"found {column.iloc[0]}"
             )
-        minutes = round(offset.total_seconds() / 60)
-        sign = "−" if minutes < 0 else "+"
-        name = f"UTC{sign}{abs(minutes) // 60:02d}:{abs(minutes) % 60:02d}"
-        return LocalTime((moments + offset).dt.tz_localize(None).to_numpy(), name)
+        offset = first.isoformat(timespec="minutes").removeprefix(f"{first:%Y-%m-%dT%H:%M}")
+        local = (moments + first.utcoffset()).dt.tz_localize(None)
+        return LocalTime(local.to_numpy(), f"UTC{offset.replace('-', '−')}")

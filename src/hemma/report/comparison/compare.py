@@ -3,32 +3,28 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from hemma.errors import HemmaError
-from hemma.evaluation import (
-    NEGLIGIBLE,
-    Improvement,
-    Metrics,
-    Pair,
-    Sample,
-    probability_of_improvement,
-    summarise,
-)
-from hemma.report.comparison.disagreements import disagreements, why_not_comparable
+from hemma.evaluation import NEGLIGIBLE, Pair, Sample, probability_of_improvement, summarise
 from hemma.report.comparison.records import (
+    Chance,
     ComparedHome,
-    ComparedMethod,
+    Differences,
+    Disagreement,
     FolderComparison,
     MeasuredMethod,
     OverHomes,
+    ShareDifference,
 )
 from hemma.report.methods import in_order
 from hemma.results.records import MethodRuns
 from hemma.results.results import RESULTS_FILE, HomeResults, Results, load_results
+from hemma.results.summary import bounds
 
 RATIOS = ("share_of_savings", "gap_to_optimum")
 """What can be compared even where two folders measured on other data."""
-COMPARED = ("energy_cost", *RATIOS, "mean_temperature_deviation")
+COMPARED = tuple(Differences.model_fields)
 
 
 def compare(folders: Sequence[Path]) -> FolderComparison:
@@ -40,13 +36,12 @@ def compare(folders: Sequence[Path]) -> FolderComparison:
     paths = [path.parent if path.name == RESULTS_FILE else path for path in folders]
     _require_folders(paths)
     results = {str(path): load_results(path) for path in paths}
-    shared = _shared_homes(results)
     return FolderComparison(
         folders=tuple(results),
         disagreements=disagreements(list(results.values())),
-        homes=tuple(_compared_home(results, home) for home in shared),
-        over_homes=tuple(_over_homes(results)),
         notes=tuple(_lacking(results)),
+        homes={home: _compared_home(results, home) for home in _shared_homes(results)},
+        over_homes=tuple(_over_homes(results)),
     )
 
 
@@ -79,6 +74,41 @@ def _shared_homes(results: dict[str, Results]) -> list[str]:
     return shared
 
 
+def disagreements(results: Sequence[Results]) -> tuple[Disagreement, ...]:
+    """Version, source code and settings that differ between the folders, settings by their dotted names."""
+    columns = [
+        {"hemma": one.hemma, "code": one.code[:12] or None, **dict(_flattened("", one.settings))}
+        for one in results
+    ]
+    keys = dict.fromkeys(key for column in columns for key in column)
+    rows = [Disagreement(key=key, values=tuple(column.get(key) for column in columns)) for key in keys]
+    return tuple(row for row in rows if any(value != row.values[0] for value in row.values[1:]))
+
+
+def why_not_comparable(first: HomeResults, other: HomeResults) -> str | None:
+    """Why costs of the same home in two folders say nothing about each other; None where they do."""
+    if not first.traces_sha256 or not other.traces_sha256:
+        return "do not both say on which traces they were measured"
+    if first.traces_sha256 != other.traces_sha256:
+        shown = f"{first.traces_sha256[:12]} and {other.traces_sha256[:12]}"
+        return f"were measured on different traces (SHA-256 {shown})"
+    if first.test != other.test:
+        return "were measured over different test periods"
+    if first.currency != other.currency:
+        return "were measured in different currencies"
+    return None
+
+
+def _flattened(prefix: str, settings: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Nested settings by dotted names; a list is one value."""
+    for key, value in settings.items():
+        name = f"{prefix}.{key}" if prefix else key
+        if isinstance(value, dict):
+            yield from _flattened(name, value)
+        else:
+            yield name, value
+
+
 def _lacking(results: dict[str, Results]) -> Iterator[str]:
     for home in dict.fromkeys(home for one in results.values() for home in one.finished):
         without = [name for name, one in results.items() if home not in one.finished]
@@ -102,50 +132,45 @@ class _Same:
     def is_comparable(self) -> bool:
         return why_not_comparable(self.first, self.own) is None
 
-    def difference(self, method: str) -> Metrics:
+    def difference(self, method: str) -> Differences:
         """Of the means; costs only where they can be compared."""
         own, first = self.own.methods[method].mean, self.first.methods[method].mean
         names = COMPARED if self.is_comparable else RATIOS
-        return Metrics(**{name: _less(getattr(own, name), getattr(first, name)) for name in names})
-
-    def improvement(self, method: str) -> Improvement | None:
-        return _improvement([self], method) if self.is_comparable else None
+        return Differences(**{name: _less(getattr(own, name), getattr(first, name)) for name in names})
 
 
 def _compared_home(results: dict[str, Results], home: str) -> ComparedHome:
-    (name, one), *_ = results.items()
-    first = one.finished[home]
-    entries = {folder: other.finished.get(home) for folder, other in results.items()}
-    present = [entry for entry in entries.values() if entry is not None]
-    reasons = {folder: entry and why_not_comparable(first, entry) for folder, entry in entries.items()}
-    methods = in_order(dict.fromkeys(method for entry in present for method in entry.methods))
+    entries = {folder: one.finished[home] for folder, one in results.items() if home in one.finished}
+    (name, first), *_ = entries.items()
+    reasons = {folder: why_not_comparable(first, entry) for folder, entry in entries.items()}
+    methods = in_order(dict.fromkeys(method for entry in entries.values() for method in entry.methods))
     return ComparedHome(
-        home=home,
-        currencies=tuple(entry and entry.currency for entry in entries.values()),
-        methods=tuple(
-            ComparedMethod(method, tuple(_measured(entry, first, method) for entry in entries.values()))
-            for method in methods
-        ),
+        currencies={folder: entry.currency for folder, entry in entries.items()},
         notes=tuple(
             f"{home}: {name} and {folder} {reason}: only ratios can be compared"
             for folder, reason in reasons.items()
             if reason
         ),
+        methods={
+            method: {
+                folder: _measured(entry, first, method)
+                for folder, entry in entries.items()
+                if method in entry.methods
+            }
+            for method in methods
+        },
     )
 
 
-def _measured(home: HomeResults | None, first: HomeResults, name: str) -> MeasuredMethod | None:
-    if home is None or name not in home.methods:
-        return None
-    method, same = home.methods[name], None
-    if home is not first and name in first.methods:
-        same = _Same(home, first)
+def _measured(home: HomeResults, first: HomeResults, name: str) -> MeasuredMethod:
+    method = home.methods[name]
+    same = _Same(home, first) if home is not first and name in first.methods else None
     return MeasuredMethod(
-        len(method.runs),
-        method.mean,
-        method.interval,
-        same and same.difference(name),
-        same and same.improvement(name),
+        runs=len(method.runs),
+        mean=method.mean,
+        interval=method.interval,
+        difference=same and same.difference(name),
+        improvement=same and _chance([same], name),
     )
 
 
@@ -165,15 +190,23 @@ def _over_homes(results: dict[str, Results]) -> Iterator[OverHomes]:
 
 
 def _method_over_homes(method: str, folder: str, both: dict[str, _Same]) -> OverHomes:
-    shares = [same.difference(method).share_of_savings for same in both.values()]
-    are_comparable = all(same.is_comparable for same in both.values())
-    found = _improvement(list(both.values()), method) if are_comparable else None
-    return OverHomes(method, folder, tuple(both), summarise(shares), found)
+    found = summarise([same.difference(method).share_of_savings for same in both.values()])
+    return OverHomes(
+        method=method,
+        folder=folder,
+        homes=tuple(both),
+        share_of_savings=ShareDifference(difference=found.mean, interval=bounds(found.interval)),
+        improvement=_chance(list(both.values()), method),
+    )
 
 
-def _improvement(homes: Sequence[_Same], method: str) -> Improvement:
+def _chance(homes: Sequence[_Same], method: str) -> Chance | None:
+    """None unless all homes were measured on the same data in both folders."""
+    if not all(same.is_comparable for same in homes):
+        return None
     pairs = [Pair(_sample(same.own.methods[method]), _sample(same.first.methods[method])) for same in homes]
-    return probability_of_improvement(pairs, NEGLIGIBLE)
+    found = probability_of_improvement(pairs, NEGLIGIBLE)
+    return Chance(probability=found.probability, interval=bounds(found.interval))
 
 
 def _sample(method: MethodRuns) -> Sample:

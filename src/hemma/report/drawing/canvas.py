@@ -10,19 +10,22 @@ import matplotlib as mpl
 import numpy as np
 from jaxtyping import Shaped
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.dates import HourLocator, num2date
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import NullLocator
 
 from hemma.checkpoint import write_atomically
+from hemma.report.numbers import plain
 
 DOTS_PER_INCH = 180
 PANEL_WIDTH, FULL_WIDTH = 5.4, 9.2
 """Widths [inch] of half and whole figures."""
 INK, FAINT, GRID = "#222222", "#666666", "#E2E2E2"
+LINEAR_BELOW = 0.001
+"""Mean deviation [degC] below which its axis is linear, so that zero has a place."""
 
 _STYLE: dict[Any, Any] = {
-    "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
     "font.size": 9.0,
     "axes.titlesize": 10.0,
@@ -31,7 +34,6 @@ _STYLE: dict[Any, Any] = {
     "axes.labelsize": 9.0,
     "axes.labelcolor": INK,
     "axes.edgecolor": FAINT,
-    "axes.linewidth": 0.8,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
@@ -46,15 +48,11 @@ _STYLE: dict[Any, Any] = {
     "legend.fontsize": 8.5,
     "legend.handlelength": 2.4,
     "legend.columnspacing": 1.4,
-    "lines.linewidth": 1.5,
     "text.color": INK,
     "text.parse_math": False,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
     "figure.constrained_layout.h_pad": 0.06,
     "svg.hashsalt": "hemma",
     "svg.fonttype": "path",
-    "axes.unicode_minus": True,
 }
 
 
@@ -101,20 +99,31 @@ def literal(text: str) -> str:
 
 def legend_above(axes: Axes, columns: int) -> None:
     """The legend in rows between title and axes, where it hides no data."""
-    handles, labels = axes.get_legend_handles_labels()
+    handles, _ = axes.get_legend_handles_labels()
     if not handles:
         return
     rows = -(-len(handles) // columns)
     axes.legend(
-        handles,
-        labels,
-        loc="lower left",
-        bbox_to_anchor=(-0.01, 1.0),
-        ncols=columns,
-        borderaxespad=0.1,
-        borderpad=0.2,
+        loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=columns, borderaxespad=0.1, borderpad=0.2
     )
     axes.set_title(axes.get_title(loc="left"), pad=7.0 + 14.0 * rows)
+
+
+def plain_numbers(axis: Axis) -> None:
+    """Numbers without powers of ten beside a logarithmic axis, and no marks between them."""
+    axis.set_major_formatter(lambda value, _: plain(value))
+    axis.set_minor_locator(NullLocator())
+
+
+def label_deviation(axes: Axes) -> None:
+    """Numbers and name of the mean deviation below an axis that is linear below ``LINEAR_BELOW``."""
+    plain_numbers(axes.xaxis)
+    axes.set_xlabel(f"Mean deviation (°C, linear below {plain(LINEAR_BELOW)})")
+
+
+def on_white(pad: float) -> dict[str, Any]:
+    """The ground of a text that stands above lines; ``pad`` [point] wider than the text on all sides."""
+    return {"facecolor": "white", "edgecolor": "none", "pad": pad}
 
 
 def days_below(axes: Axes, first: np.datetime64, last: np.datetime64) -> None:
@@ -124,15 +133,14 @@ def days_below(axes: Axes, first: np.datetime64, last: np.datetime64) -> None:
     axes.set_xlim(first, last)  # pyright: ignore[reportArgumentType]
     if days <= 8:
         axes.xaxis.set_minor_locator(HourLocator(byhour=(6, 12, 18)))
-    axes.xaxis.set_major_formatter(FuncFormatter(_day_name))
+    axes.xaxis.set_major_formatter(lambda days, _: _day_name(days))
 
 
 def midnights(first: np.datetime64, last: np.datetime64) -> Shaped[np.ndarray, "days"]:
     """All midnights from ``first`` to ``last``."""
     day = np.timedelta64(1, "D")
-    midnight = first.astype("datetime64[D]")
-    every = np.arange(midnight if midnight >= first else midnight + day, last + day, day)
-    return every[every <= last]
+    every = np.arange(first.astype("datetime64[D]"), last + day, day)
+    return every[(every >= first) & (every <= last)]
 
 
 def say_nothing_to_show(axes: Axes, reason: str) -> None:
@@ -141,6 +149,6 @@ def say_nothing_to_show(axes: Axes, reason: str) -> None:
     axes.text(0.5, 0.5, reason, ha="center", va="center", transform=axes.transAxes, color=FAINT)
 
 
-def _day_name(days: float, position: int | None = None) -> str:
+def _day_name(days: float) -> str:
     moment = num2date(days)
     return f"{moment:%a} {moment.day} {moment:%b}"

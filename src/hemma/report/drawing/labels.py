@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -50,10 +49,10 @@ def place_labels(axes: Axes, labels: Sequence[Label], lines: Sequence[Float[np.n
     figure.draw_without_rendering()
     frame = np.array(axes.get_window_extent().extents)
     labels = _joined(axes, labels)
-    points = [axes.transData.transform((label.x, label.y)) for label in labels]
+    points = [_pixel(axes, label) for label in labels]
     traced = [_dense(axes.transData.transform(line)) for line in lines if len(line)]
     track = np.concatenate(traced) if traced else np.zeros((0, 2))
-    taken = _Taken(frame, track, [_around(point, 4.0) for point in points], [], [])
+    taken = _Taken(frame, track, [np.array([*(point - 4.0), *(point + 4.0)]) for point in points], [], [])
     for number, (label, point) in enumerate(zip(labels, points, strict=True)):
         spot = _Spot(number, point, _size(axes, label), figure.dpi / 72)
         offset = _cheapest(spot, taken)
@@ -118,50 +117,40 @@ def _joined(axes: Axes, labels: Sequence[Label]) -> list[Label]:
     """One label for points that lie on each other, three names a line; the first point carries it."""
     groups: list[list[Label]] = []
     for label in labels:
-        here = axes.transData.transform((label.x, label.y))
-        near = [
-            group
-            for group in groups
-            if group[0].size == label.size
-            and np.hypot(*(axes.transData.transform((group[0].x, group[0].y)) - here)) < _SAME
-        ]
-        if near:
-            near[0].append(label)
-        else:
+        here = _pixel(axes, label)
+        near = (group for group in groups if np.hypot(*(_pixel(axes, group[0]) - here)) < _SAME)
+        alike = next((group for group in near if group[0].size == label.size), None)
+        if alike is None:
             groups.append([label])
-    return [
-        replace(group[0], text=_in_lines(list(dict.fromkeys(label.text for label in group))))
-        for group in groups
-    ]
+        else:
+            alike.append(label)
+    return [replace(group[0], text=_in_lines([label.text for label in group])) for group in groups]
+
+
+def _pixel(axes: Axes, label: Label) -> Float[np.ndarray, "2"]:
+    return axes.transData.transform((label.x, label.y))
 
 
 def _in_lines(texts: list[str]) -> str:
-    lines = [", ".join(texts[first : first + 3]) for first in range(0, len(texts), 3)]
-    return ",\n".join(lines)
+    names = list(dict.fromkeys(texts))
+    return ",\n".join(", ".join(names[first : first + 3]) for first in range(0, len(names), 3))
 
 
 def _write(axes: Axes, label: Label, offset: Float[np.ndarray, "2"]) -> None:
-    is_far = float(np.hypot(*offset)) > _LEADER
+    is_far, is_right = float(np.hypot(*offset)) > _LEADER, offset[0] >= 0
+    # From the point to the near edge of its name.
+    line = {"arrowstyle": "-", "color": FAINT, "lw": 0.5, "shrinkA": 0.0, "shrinkB": 3.0}
+    line["relpos"] = (0.0 if is_right else 1.0, 0.5)
     note = axes.annotate(
         label.text,
         (label.x, label.y),
         xytext=tuple(offset),
         textcoords="offset points",
-        ha="left" if offset[0] >= 0 else "right",
-        va="center",
         fontsize=label.size,
-        color=label.colour,
-        zorder=6,
         parse_math=True,
-        arrowprops=_line(offset) if is_far else None,
+        arrowprops=line if is_far else None,
     )
-    note.set_in_layout(False)
-
-
-def _line(offset: Float[np.ndarray, "2"]) -> dict[str, Any]:
-    """How the line looks that leads from the point to the near edge of its name."""
-    edge = (0.0, 0.5) if offset[0] >= 0 else (1.0, 0.5)
-    return {"arrowstyle": "-", "color": FAINT, "lw": 0.5, "relpos": edge, "shrinkA": 0.0, "shrinkB": 3.0}
+    note.set(ha="left" if is_right else "right", va="center", color=label.colour, zorder=6, in_layout=False)
 
 
 def _crossings(boxes: Sequence[Box], line: Float[np.ndarray, "more 2"]) -> int:
@@ -175,10 +164,6 @@ def _size(axes: Axes, label: Label) -> Float[np.ndarray, "2"]:
     extent = text.get_window_extent()
     text.remove()
     return np.array([extent.width, extent.height])
-
-
-def _around(point: Float[np.ndarray, "2"], radius: float) -> Box:
-    return np.array([*(point - radius), *(point + radius)])
 
 
 def _dense(track: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "more 2"]:

@@ -1,15 +1,16 @@
 """Axes over local time: lines and steps of a week, and the buying price behind them."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from hemma.report.drawing.canvas import FAINT, days_below, legend_above
-from hemma.report.methods import look_of
-from hemma.report.week import Week
+from hemma.report.subject import Week
 from hemma.results.results import HomeResults
 
-PRICE_COLOUR = "#BDBDBD"
+PRICE_LOOK: dict[str, Any] = {"color": "#BDBDBD", "alpha": 0.6, "linewidth": 0}
 _PRICE_SHARE = 2.6
 """The price axis reaches this many times the highest price, which keeps it below the temperatures."""
 
@@ -17,12 +18,6 @@ _PRICE_SHARE = 2.6
 def step_values(values: np.ndarray) -> np.ndarray:
     """Slot values at the fence posts of a step drawn from each post to the next."""
     return np.append(values, values[-1])
-
-
-def draw_line(axes: Axes, method: str, time: np.ndarray, values: np.ndarray) -> None:
-    """A method's line in its own look."""
-    look = look_of(method)
-    axes.plot(time, values, color=look.colour, linestyle=look.line, lw=1.5, label=method)  # pyright: ignore[reportArgumentType]
 
 
 def finish_week(axes: Axes, home: HomeResults, week: Week) -> None:
@@ -36,8 +31,8 @@ def finish_week(axes: Axes, home: HomeResults, week: Week) -> None:
 def _shade_price(axes: Axes, home: HomeResults, week: Week) -> None:
     price = step_values(week.exogenous.buying_price)
     right = axes.twinx()
-    right.fill_between(week.posts, price, step="post", color=PRICE_COLOUR, alpha=0.6, linewidth=0)
-    axes.fill_between([], [], color=PRICE_COLOUR, alpha=0.6, linewidth=0, label="buying price (right)")
+    right.fill_between(week.posts, price, step="post", **PRICE_LOOK)
+    axes.fill_between([], [], label="buying price (right)", **PRICE_LOOK)
     lowest, highest = week.price_range
     right.set_ylim(lowest, _PRICE_SHARE * highest)
     right.set_yticks([tick for tick in MaxNLocator(3).tick_values(0.0, highest) if tick <= 1.2 * highest])

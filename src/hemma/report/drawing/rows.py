@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 
-from hemma.report.drawing.canvas import FAINT, INK
+from hemma.report.drawing.canvas import FAINT, INK, on_white
 from hemma.report.methods import grouped
+from hemma.report.tables.cells import Metric
+from hemma.results.records import MethodRuns
 from hemma.results.results import HomeResults
 
 FROM_ZERO = "No deviation is negative: an interval that reaches below zero is drawn from zero."
@@ -15,20 +17,13 @@ UNGROUPED = 8
 
 
 @dataclass(frozen=True)
-class GroupTitle:
-    """A line of text above the rows of a group."""
-
-    text: str
-    place: float
-
-
-@dataclass(frozen=True)
 class MethodRows:
     """Where each method stands, from 0 downwards in steps of one row."""
 
     places: dict[str, float]
     """By method."""
-    titles: tuple[GroupTitle, ...]
+    titles: dict[str, float]
+    """Of groups, where they have any."""
     count: float
     """Rows in all, with those of the titles."""
 
@@ -38,16 +33,16 @@ def method_rows(methods: Iterable[str]) -> MethodRows:
     groups = grouped(methods)
     has_titles = sum(map(len, groups.values())) > UNGROUPED and len(groups) > 1
     places: dict[str, float] = {}
-    titles: list[GroupTitle] = []
+    titles: dict[str, float] = {}
     place = 0.0
     for title, names in groups.items():
         if has_titles:
-            titles.append(GroupTitle(title, place))
+            titles[title] = place
             place += 1.0
         for name in names:
             places[name] = place
             place += 1.0
-    return MethodRows(places, tuple(titles), place)
+    return MethodRows(places, titles, place)
 
 
 def rows_height(methods: Iterable[str]) -> float:
@@ -61,32 +56,15 @@ def label_rows(axes: Axes, rows: MethodRows) -> None:
     axes.set_ylim(rows.count - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="y", visible=False)
-    for title in rows.titles:
-        axes.text(
-            0.005,
-            title.place + 0.12,
-            title.text,
-            transform=axes.get_yaxis_transform(),
-            va="center",
-            fontsize=7.5,
-            color=FAINT,
-            zorder=5,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-        )
+    for title, place in rows.titles.items():
+        text = axes.text(0.005, place + 0.12, title, transform=axes.get_yaxis_transform(), va="center")
+        text.set(fontsize=7.5, color=FAINT, zorder=5, bbox=on_white(0.6))
 
 
 def write_value(axes: Axes, place: float, reach: float, text: str) -> None:
     """Write a number to the right of everything that is drawn in its row."""
-    axes.annotate(
-        text,
-        (reach, place),
-        xytext=(7, 0),
-        textcoords="offset points",
-        va="center",
-        fontsize=8.0,
-        color=INK,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
-    )
+    note = axes.annotate(text, (reach, place), xytext=(7, 0), textcoords="offset points", va="center")
+    note.set(fontsize=8.0, color=INK, bbox=on_white(0.8))
 
 
 def above_zero(interval: tuple[float, float] | None) -> tuple[float, float] | None:
@@ -94,19 +72,32 @@ def above_zero(interval: tuple[float, float] | None) -> tuple[float, float] | No
     return None if interval is None else (max(0.0, interval[0]), max(0.0, interval[1]))
 
 
-def draw_interval(axes: Axes, place: float, interval: tuple[float, float] | None, colour: str) -> None:
-    """A 95 % interval with its two ends."""
+@dataclass(frozen=True)
+class Quantity:
+    """A metric of a method and of its runs, as it is drawn."""
+
+    read: Metric
+    is_never_negative: bool = False
+
+    def of_runs(self, method: MethodRuns) -> list[float]:
+        """Of all runs that have it."""
+        return [value for run in method.runs if (value := self.read(run)) is not None]
+
+    def interval_of(self, method: MethodRuns) -> tuple[float, float] | None:
+        """The part of the 95 % interval that can be true."""
+        interval = self.read(method.interval)
+        return above_zero(interval) if self.is_never_negative else interval
+
+
+def draw_runs(axes: Axes, place: float, method: MethodRuns, quantity: Quantity, colour: str) -> float:
+    """The 95 % interval with its two ends, and the seeds a little below it; how far right a row reaches."""
+    seeds, interval = quantity.of_runs(method), quantity.interval_of(method)
+    if len(seeds) > 1:
+        axes.plot(seeds, [place + 0.27] * len(seeds), "o", color=colour, alpha=0.45, markersize=2.8, mew=0)
     if interval is not None:
         axes.hlines(place, *interval, color=colour, linewidth=1.8, zorder=3)
         axes.plot(interval, [place, place], "|", color=colour, markersize=6, markeredgewidth=1.4, zorder=3)
-
-
-def draw_seeds(axes: Axes, place: float, values: Iterable[float | None], colour: str) -> list[float]:
-    """Faint points, a little below the mean; the values that exist."""
-    drawn = [value for value in values if value is not None]
-    if len(drawn) > 1:
-        axes.plot(drawn, [place + 0.27] * len(drawn), "o", color=colour, alpha=0.45, markersize=2.8, mew=0)
-    return drawn
+    return max([0.0, *seeds, *(interval or ()), quantity.read(method.mean) or 0.0])
 
 
 def explain_marks(axes: Axes, home: HomeResults) -> None:

@@ -1,24 +1,19 @@
-"""Every figure of the report, one module each: a new one is a module and a line in one of the tuples."""
+"""Every figure of the report: a new one is a module and a line in one of the tuples."""
 
 from typing import Any
 
 from hemma.report.figures.cost_and_comfort import COST_AND_COMFORT
 from hemma.report.figures.figure import ReportFigure
 from hemma.report.figures.free_run import FREE_RUN
-from hemma.report.figures.panels.battery_level import BATTERY_LEVEL
-from hemma.report.figures.panels.cost_by_demonstrations import COST_BY_DEMONSTRATIONS
-from hemma.report.figures.panels.deviation_by_demonstrations import DEVIATION_BY_DEMONSTRATIONS
-from hemma.report.figures.panels.energy_cost import ENERGY_COST
-from hemma.report.figures.panels.indoor_temperature import INDOOR_TEMPERATURE
+from hemma.report.figures.panels.demonstrations import COST_BY_DEMONSTRATIONS, DEVIATION_BY_DEMONSTRATIONS
+from hemma.report.figures.panels.methods import ENERGY_COST, TEMPERATURE_DEVIATION
 from hemma.report.figures.panels.results import RESULTS
-from hemma.report.figures.panels.temperature_deviation import TEMPERATURE_DEVIATION
-from hemma.report.figures.powers_week import POWERS_WEEK
+from hemma.report.figures.panels.week import BATTERY_LEVEL, INDOOR_TEMPERATURE, POWERS_WEEK
 from hemma.report.figures.probability_of_improvement import IMPROVEMENT_OVER_HOMES, PROBABILITY_OF_IMPROVEMENT
 from hemma.report.figures.regret import REGRET
 from hemma.report.figures.share_of_savings import SHARE_OF_SAVINGS
 from hemma.report.figures.traces_week import TRACES_WEEK
-from hemma.report.figures.training_curves import TRAINING_CURVES
-from hemma.report.figures.training_diagnostics import TRAINING_DIAGNOSTICS
+from hemma.report.figures.training import TRAINING_CURVES, TRAINING_DIAGNOSTICS
 from hemma.report.subject import HomeSubject
 from hemma.results.results import Results
 

@@ -7,19 +7,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import FuncFormatter, NullLocator
 
-from hemma.report.drawing.canvas import FAINT, INK, literal, new_figure
+from hemma.report.drawing.canvas import FAINT, INK, LINEAR_BELOW, label_deviation, literal, new_figure
 from hemma.report.drawing.labels import Label, place_labels
-from hemma.report.figures.figure import HomeFigure, Section, Words
+from hemma.report.figures.figure import HomeFigure, ReportSection, Words
 from hemma.report.methods import in_order, look_of
-from hemma.report.numbers import degrees, money, plain, rough
+from hemma.report.numbers import degrees, money, rough
 from hemma.results.findings import ParetoPoint
 from hemma.results.results import HomeResults
 
 FRONTIER = "optimum"
-LINEAR_BELOW = 0.001
-"""Mean deviation [degC] below which the axis is linear, so that zero has a place."""
 _ENLARGED = 0.7
 """The dearer methods get a panel of their own if the rest needs less than this part of the axis."""
 _MARGIN = 0.08
@@ -64,19 +61,9 @@ def parameter_name(point: ParetoPoint) -> str:
 def sweeps_of(home: HomeResults) -> list[SweptSeries]:
     """The series that have points, the frontier first; each in the order of what was swept."""
     known = [p for p in home.pareto if None not in (p.energy_cost, p.mean_temperature_deviation)]
-    names = dict.fromkeys([*(p.series for p in known if p.series == FRONTIER), *(p.series for p in known)])
-    return [
-        SweptSeries(
-            name,
-            tuple(
-                sorted(
-                    (p for p in known if p.series == name),
-                    key=lambda p: (p.mean_temperature_deviation if name == FRONTIER else p.value) or 0.0,
-                )
-            ),
-        )
-        for name in names
-    ]
+    names = sorted(dict.fromkeys(p.series for p in known), key=lambda name: name != FRONTIER)
+    known.sort(key=lambda p: (p.mean_temperature_deviation if p.series == FRONTIER else p.value) or 0.0)
+    return [SweptSeries(name, tuple(p for p in known if p.series == name)) for name in names]
 
 
 def standings(home: HomeResults) -> list[Standing]:
@@ -96,23 +83,25 @@ def pareto_figure(home: HomeResults) -> Figure:
     low, high, cut = min(costs), max(costs), _cut(methods, sweeps)
     is_split = cut - low < _ENLARGED * (high - low)
     figure = new_figure(9.2, 5.6)
-    ratios = [1.0, 1.7] if is_split else [1.0]
-    panels = figure.subplots(1, len(ratios), squeeze=False, width_ratios=ratios).ravel()
-    for axes, top in zip(panels, (high, cut), strict=False):
-        _draw(axes, sweeps, [m for m in methods if m.cost <= top])
-        _limit(axes, (low, top), sweeps, methods)
-    panels[0].set_ylabel(f"Energy cost of the test period ({home.currency})")
-    handles, words = panels[0].get_legend_handles_labels()
-    for text in figure.legend(handles, words, loc="outside upper left", ncols=2).get_texts():
+    ratios = (1.0, 1.7) if is_split else (1.0,)
+    whole, *enlarged = figure.subplots(1, len(ratios), squeeze=False, width_ratios=ratios).ravel()
+    _draw(whole, sweeps, methods, (low, high))
+    whole.set_ylabel(f"Energy cost of the test period ({home.currency})")
+    legend = figure.legend(*whole.get_legend_handles_labels(), loc="outside upper left", ncols=2)
+    for text in legend.get_texts():
         text.set_parse_math(True)
     if not is_split:
-        _name(panels[0], methods, sweeps, (low, high))
+        _name(whole, methods, sweeps, (low, high))
         return figure
-    panels[0].set_title("All methods")
-    panels[1].set_title("The frame, enlarged")
-    _frame(panels[0], panels[1])
-    _name(panels[0], [m for m in methods if m.cost > cut], sweeps, (cut, high))
-    _name(panels[1], [m for m in methods if m.cost <= cut], sweeps, (low, cut))
+    [part] = enlarged
+    _draw(part, sweeps, methods, (low, cut))
+    whole.set_title("All methods")
+    part.set_title("The frame, enlarged")
+    (left, right), (bottom, top) = part.get_xlim(), part.get_ylim()
+    frame = Rectangle((left, bottom), right - left, top - bottom, fill=False, color=FAINT, lw=0.8, ls=":")
+    whole.add_patch(frame)
+    _name(whole, [m for m in methods if m.cost > cut], sweeps, (cut, high))
+    _name(part, [m for m in methods if m.cost <= cut], sweeps, (low, cut))
     return figure
 
 
@@ -123,55 +112,27 @@ def _cut(methods: Sequence[Standing], sweeps: Sequence[SweptSeries]) -> float:
     return max([costs[(3 * len(costs)) // 4] if len(costs) > 3 else costs[-1], *frontier])
 
 
-def _draw(axes: Axes, sweeps: Sequence[SweptSeries], methods: Sequence[Standing]) -> None:
+def _draw(
+    axes: Axes, sweeps: Sequence[SweptSeries], methods: Sequence[Standing], costs: tuple[float, float]
+) -> None:
+    """All sweeps and the methods up to the higher of the costs, on axes from the lower to the higher."""
+    low, high = costs
     axes.set_xscale("symlog", linthresh=LINEAR_BELOW, linscale=0.5)
     for sweep in sweeps:
         look, (x, y) = look_of(sweep.name), sweep.track.T
         # Between two points of a sweep there is nothing: a line would seem to cross the proven one.
-        style, marker, size = ("-", ".", 4) if sweep.name == FRONTIER else ("none", look.marker, 3.5)
-        axes.plot(
-            x,
-            y,
-            color=look.colour,
-            linestyle=style,
-            marker=marker,
-            ms=size,
-            lw=1.3,
-            label=sweep.legend,
-            alpha=0.8,
-        )
+        style, size = (".-", 4) if sweep.name == FRONTIER else (look.marker, 3.5)
+        axes.plot(x, y, style, color=look.colour, ms=size, lw=1.3, label=sweep.legend, alpha=0.8)
+    edge = {"mec": "white", "mew": 0.7}
     for method in methods:
-        look = look_of(method.name)
-        axes.plot(
-            method.deviation,
-            method.cost,
-            look.marker,
-            color=look.colour,
-            markersize=6.5,
-            markeredgecolor="white",
-            markeredgewidth=0.7,
-            zorder=4,
-            clip_on=False,
-        )
-
-
-def _limit(
-    axes: Axes, costs: tuple[float, float], sweeps: Sequence[SweptSeries], methods: Sequence[Standing]
-) -> None:
-    low, high = costs
+        if method.cost <= high:
+            x, y, look = method.deviation, method.cost, look_of(method.name)
+            axes.plot(x, y, look.marker, color=look.colour, ms=6.5, zorder=4, clip_on=False, **edge)
     margin = _MARGIN * (high - low) or 1.0
     axes.set_ylim(low - margin, high + margin)
     seen = [*(m.deviation for m in methods), *(x for sweep in sweeps for x in sweep.track[:, 0])]
     axes.set_xlim(-LINEAR_BELOW / 4, 3.0 * max(LINEAR_BELOW, *seen))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel(f"Mean deviation (°C, linear below {plain(LINEAR_BELOW)})")
-
-
-def _frame(axes: Axes, enlarged: Axes) -> None:
-    (left, right), (bottom, top) = enlarged.get_xlim(), enlarged.get_ylim()
-    frame = Rectangle((left, bottom), right - left, top - bottom, fill=False, color=FAINT, lw=0.8, ls=":")
-    axes.add_patch(frame)
+    label_deviation(axes)
 
 
 def _name(
@@ -219,7 +180,7 @@ def _words(home: HomeResults) -> Words:
 
 COST_AND_COMFORT = HomeFigure[HomeResults](
     name="cost-and-comfort",
-    section=Section("Cost against comfort"),
+    section=ReportSection("Cost against comfort"),
     needs=lambda subject: subject.home if sweeps_of(subject.home) and standings(subject.home) else None,
     draw=pareto_figure,
     words=_words,

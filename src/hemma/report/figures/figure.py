@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Generic, TypeVar
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from hemma.report.drawing.canvas import PANEL_WIDTH, single
 from hemma.report.subject import HomeSubject
+from hemma.results.results import HomeResults
 
 Subject = TypeVar("Subject")
 """A home of a results folder, or all of them."""
@@ -22,16 +25,16 @@ class Part(Enum):
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     """A section of the report; the first figure that names it says where it stands among the others."""
 
     title: str
     part: Part = Part.RESULTS
 
 
-PANELS = Section("The six panels")
-LEARNING = Section("Learning curves", Part.BACKGROUND)
-IDENTIFICATION = Section("Identification", Part.BACKGROUND)
+PANELS = ReportSection("The six panels")
+LEARNING = ReportSection("Learning curves", Part.BACKGROUND)
+IDENTIFICATION = ReportSection("Identification", Part.BACKGROUND)
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ class ReportFigure(Generic[Subject, Need]):
 
     name: str
     """File name without ending, and without what several homes put before it."""
-    section: Section | None
+    section: ReportSection | None
     """None for a figure that is written and stands in no report."""
     needs: Callable[[Subject], Need | None]
     """What it is drawn from; None where the folder does not have it."""
@@ -73,6 +76,23 @@ class ReportFigure(Generic[Subject, Need]):
 
 HomeFigure = ReportFigure[HomeSubject, Need]
 """A figure of one home."""
+
+
+def half_panel(
+    name: str,
+    draw: Callable[[Axes, HomeResults], None],
+    words: Callable[[HomeResults], Words],
+    height: Callable[[HomeResults], float],
+) -> HomeFigure[HomeResults]:
+    """One of the panels that stand two beside each other; ``height`` is in inch."""
+    return HomeFigure[HomeResults](
+        name=name,
+        section=PANELS,
+        needs=lambda subject: subject.home,
+        draw=lambda home: single(PANEL_WIDTH, height(home), lambda axes: draw(axes, home)),
+        words=words,
+        is_wide=False,
+    )
 
 
 def listed(names: Iterable[str]) -> str:

@@ -7,7 +7,7 @@ from hemma.methods.looks import BLUE, VERMILLION
 from hemma.report.drawing.canvas import FAINT, INK, days_below, legend_above, new_figure
 from hemma.report.figures.figure import IDENTIFICATION, HomeFigure, Words
 from hemma.report.series import FreeRun
-from hemma.report.week import WEEK_DAYS
+from hemma.report.subject import WEEK_DAYS
 
 
 def free_run_figure(run: FreeRun) -> Figure:

@@ -1,6 +1,6 @@
 """Who beats whom: the probability that a run of one method has a lower regret than a run of another."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from hemma.report.drawing.canvas import FULL_WIDTH, new_figure
-from hemma.report.figures.figure import HomeFigure, ReportFigure, Section, Words
+from hemma.report.figures.figure import HomeFigure, ReportFigure, ReportSection, Words
 from hemma.report.methods import in_order
 from hemma.report.numbers import decimals
 from hemma.results.findings import Improvement
@@ -36,14 +36,9 @@ class Chances:
     """By (method, over); both directions of every pair that is known."""
 
 
-def comparison_of(improvements: Sequence[Improvement], methods: Iterable[str] | None = None) -> Chances:
-    """The pairs among ``methods`` (all if None); a pair given one way only is turned around."""
-    wanted = None if methods is None else set(methods)
-    known = [
-        entry
-        for entry in improvements
-        if entry.probability is not None and (wanted is None or {entry.method, entry.over} <= wanted)
-    ]
+def comparison_of(improvements: Iterable[Improvement], methods: set[str]) -> Chances:
+    """The pairs among the methods; a pair given one way only is turned around."""
+    known = [one for one in improvements if one.probability is not None and {one.method, one.over} <= methods]
     pairs = {(entry.over, entry.method): _turned(entry) for entry in known}
     pairs |= {(entry.method, entry.over): entry for entry in known}
     named = in_order(dict.fromkeys(name for pair in pairs for name in pair))
@@ -72,14 +67,12 @@ def improvement_figure(comparison: Chances) -> Figure:
 
 def _draw_cell(axes: Axes, row: int, column: int, entry: Improvement) -> None:
     """A rectangle and not a pixel of an image: the figure stays sharp and holds no foreign file."""
-    chance = entry.probability if entry.probability is not None else 0.5
-    axes.add_patch(
-        Rectangle((column - 0.5, row - 0.5), 1, 1, facecolor=_colour(entry), edgecolor="white", lw=1.5)
-    )
+    corner, colour = (column - 0.5, row - 0.5), _colour(entry)
+    axes.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white", lw=1.5))
     lift = 0.0 if entry.interval is None else 0.13
-    axes.text(column, row - lift, decimals(chance, 2), ha="center", va="center", fontsize=8.5)
+    axes.text(column, row - lift, decimals(entry.probability, 2), ha="center", va="center", fontsize=8.5)
     if entry.interval is not None:
-        said = f"{decimals(entry.interval[0], 2)}–{decimals(entry.interval[1], 2)}"
+        said = "–".join(decimals(bound, 2) for bound in entry.interval)
         axes.text(column, row + 0.25, said, ha="center", va="center", fontsize=6.2)
 
 
@@ -97,21 +90,16 @@ def _turned(entry: Improvement) -> Improvement:
     return Improvement(method=entry.over, over=entry.method, probability=chance, interval=interval)
 
 
-def _of_home(home: HomeResults) -> Chances | None:
-    """Among the learned methods and two others: what knows nothing by chance either beats another or not."""
-    found = comparison_of(home.probability_of_improvement, _compared([home]))
-    return found if found.methods else None
-
-
 def _over_homes(results: Results) -> Chances | None:
     pairs = results.aggregate.probability_of_improvement if results.aggregate else ()
-    found = comparison_of(pairs, _compared(results.finished.values()))
-    return found if found.methods else None
+    return _among_learned(pairs, results.finished.values())
 
 
-def _compared(homes: Iterable[HomeResults]) -> set[str]:
+def _among_learned(improvements: Iterable[Improvement], homes: Iterable[HomeResults]) -> Chances | None:
+    """Among the learned methods and two others: what knows nothing by chance either beats another or not."""
     learned = {name for home in homes for name, method in home.methods.items() if method.is_learned}
-    return learned | set(NOT_LEARNED) if learned else set()
+    found = comparison_of(improvements, learned.union(NOT_LEARNED) if learned else set())
+    return found if found.methods else None
 
 
 def _words(comparison: Chances, over: str) -> Words:
@@ -132,15 +120,15 @@ def _words(comparison: Chances, over: str) -> Words:
 
 PROBABILITY_OF_IMPROVEMENT = HomeFigure[Chances](
     name="probability-of-improvement",
-    section=Section("How sure the differences are"),
-    needs=lambda subject: _of_home(subject.home),
+    section=ReportSection("How sure the differences are"),
+    needs=lambda subject: _among_learned(subject.home.probability_of_improvement, [subject.home]),
     draw=improvement_figure,
     words=lambda comparison: _words(comparison, "of this home"),
     missing="No learned method is compared with another run by run in this folder.",
 )
 IMPROVEMENT_OVER_HOMES = ReportFigure[Results, Chances](
     name="probability-of-improvement",
-    section=Section("How sure the differences are"),
+    section=ReportSection("How sure the differences are"),
     needs=_over_homes,
     draw=improvement_figure,
     words=lambda comparison: _words(comparison, "on the same home"),

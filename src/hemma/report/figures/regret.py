@@ -1,5 +1,7 @@
 """Where the regret of each causal method comes from."""
 
+from typing import Any
+
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,17 +12,18 @@ from hemma.methods.looks import BLUE, GREY, ORANGE, SKY
 from hemma.report.comfort import at_equal_comfort
 from hemma.report.drawing.canvas import INK, new_figure
 from hemma.report.drawing.rows import label_rows, method_rows, rows_height, write_value
-from hemma.report.figures.figure import HomeFigure, Section, Words
+from hemma.report.figures.figure import HomeFigure, ReportSection, Words
 from hemma.report.numbers import decimals, money
 from hemma.results.results import HomeResults
 
-REGRET_SECTION = Section("Where the regret comes from")
+REGRET_SECTION = ReportSection("Where the regret comes from")
 PARTS = (
     ("not knowing the future", BLUE, ""),
     ("identified thermal model", SKY, "////"),
     ("policy", ORANGE, ""),
 )
 """Name, colour and hatching of the three parts, in the order of ``RegretSplit.parts``."""
+_EDGE: dict[str, Any] = {"edgecolor": "white", "linewidth": 0.4}
 
 
 def regret_figure(home: HomeResults) -> Figure:
@@ -50,23 +53,18 @@ def _stack(axes: Axes, place: float, parts: tuple[float, float, float] | None) -
     right = left = 0.0
     for value, (_, colour, hatch) in zip(parts or (), PARTS, strict=False):
         start = right if value >= 0 else left
-        axes.barh(
-            place, value, left=start, height=0.66, color=colour, hatch=hatch, edgecolor="white", linewidth=0.4
-        )
+        axes.barh(place, value, left=start, height=0.66, color=colour, hatch=hatch, **_EDGE)
         right, left = (right + value, left) if value >= 0 else (right, left + value)
     return right
 
 
 def _explain(figure: Figure, home: HomeResults) -> None:
     handles: list[Artist] = [
-        Patch(facecolor=colour, hatch=hatch, edgecolor="white", linewidth=0.4, label=name)
-        for name, colour, hatch in PARTS
+        Patch(facecolor=colour, hatch=hatch, label=name, **_EDGE) for name, colour, hatch in PARTS
     ]
     if any(split.parts is None and split.total is not None for split in home.regret.values()):
         handles.append(Patch(color=GREY, alpha=0.6, linewidth=0, label="not split"))
-    handles.append(
-        Line2D([], [], marker="D", color="white", markeredgecolor=INK, markersize=5, lw=0, label="sum")
-    )
+    handles.append(Line2D([], [], marker="D", color="white", mec=INK, markersize=5, lw=0, label="sum"))
     figure.legend(handles=handles, loc="outside upper left", ncols=5)
 
 

@@ -1,5 +1,8 @@
 """Several homes in one figure: what each method keeps of the possible savings, home by home."""
 
+from collections.abc import Iterator
+from itertools import cycle
+
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
@@ -7,52 +10,50 @@ from matplotlib.ticker import PercentFormatter
 from hemma.report.comfort import at_equal_comfort
 from hemma.report.drawing.canvas import FAINT, INK, new_figure
 from hemma.report.drawing.rows import label_rows, method_rows, rows_height, write_value
-from hemma.report.figures.figure import ReportFigure, Section, Words
+from hemma.report.figures.figure import ReportFigure, ReportSection, Words
 from hemma.report.methods import look_of
 from hemma.report.numbers import percent
-from hemma.results.findings import Aggregated
+from hemma.results.findings import Aggregated, AggregateMethod
 from hemma.results.results import Results
 
 LOWEST = -0.5
 """A share below this is drawn at the edge as an arrow: it would flatten all others."""
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+_MARKERS = "os^DvPX*"
 
 
 def shares_by_home(results: Results) -> dict[str, dict[str, float]]:
     """Mean share of savings by method and home, where there is one."""
-    names = dict.fromkeys(name for home in results.finished.values() for name in home.methods)
-    return {
-        name: {
-            title: share
-            for title, home in results.finished.items()
-            if name in home.methods and (share := home.methods[name].mean.share_of_savings) is not None
-        }
-        for name in names
-    }
+    shares: dict[str, dict[str, float]] = {}
+    for title, home in results.finished.items():
+        for name, method in home.methods.items():
+            if method.mean.share_of_savings is not None:
+                shares.setdefault(name, {})[title] = method.mean.share_of_savings
+    return shares
 
 
 def over_homes(results: Results, method: str) -> Aggregated:
     """A method's share of savings over all homes; nothing where the folder does not say."""
-    aggregate = results.aggregate
-    if aggregate is None or method not in aggregate.methods:
-        return Aggregated()
-    return aggregate.methods[method].share_of_savings
+    methods = results.aggregate.methods if results.aggregate else {}
+    return methods.get(method, AggregateMethod()).share_of_savings
 
 
 def homes_figure(results: Results) -> Figure:
     """A row a method: a mark a home, and the mean over all with its interval where the folder has it."""
-    shares = {name: by_home for name, by_home in shares_by_home(results).items() if by_home}
+    shares = shares_by_home(results)
     rows = method_rows(shares)
     figure = new_figure(9.2, rows_height(shares) + 0.25)
     axes = figure.add_subplot()
     for method, place in rows.places.items():
-        _draw_homes(axes, place, shares[method], list(results.finished))
-        _write_homes_below(axes, place, shares[method], over_homes(results, method).mean)
-        _draw_mean(axes, place, over_homes(results, method), look_of(method).colour)
-        top = max([*shares[method].values(), *(over_homes(results, method).interval or ()), LOWEST])
-        mean = over_homes(results, method).mean
-        if mean is not None and top > LOWEST:
-            write_value(axes, place, top, percent(mean))
+        by_home, found = shares[method], over_homes(results, method)
+        for home, marker in _markers(results):
+            share = by_home.get(home)
+            if share is not None and share >= LOWEST:
+                axes.plot(share, place + 0.16, marker, color=FAINT, alpha=0.75, ms=4.5, mew=0, zorder=3)
+        _write_homes_below(axes, place, by_home, found.mean)
+        _draw_mean(axes, place, found, look_of(method).colour)
+        top = max([*by_home.values(), *(found.interval or ()), LOWEST])
+        if found.mean is not None and top > LOWEST:
+            write_value(axes, place, top, percent(found.mean))
     label_rows(axes, rows)
     axes.axvline(1.0, color=INK, lw=1.2, linestyle=look_of("optimum").line)
     axes.axvline(0.0, color=FAINT, lw=0.9)
@@ -65,16 +66,9 @@ def homes_figure(results: Results) -> Figure:
     return figure
 
 
-def _marker(place: int) -> str:
-    return _MARKERS[place % len(_MARKERS)]
-
-
-def _draw_homes(axes: Axes, place: float, by_home: dict[str, float], homes: list[str]) -> None:
-    for number, home in enumerate(homes):
-        share = by_home.get(home)
-        if share is not None and share >= LOWEST:
-            marker = _marker(number)
-            axes.plot(share, place + 0.16, marker, color=FAINT, alpha=0.75, markersize=4.5, mew=0, zorder=3)
+def _markers(results: Results) -> Iterator[tuple[str, str]]:
+    """Each home and its mark."""
+    return zip(results.finished, cycle(_MARKERS), strict=False)
 
 
 def _write_homes_below(axes: Axes, place: float, by_home: dict[str, float], mean: float | None) -> None:
@@ -96,37 +90,37 @@ def _draw_mean(axes: Axes, place: float, found: Aggregated, colour: str) -> None
 
 
 def _explain(figure: Figure, axes: Axes, results: Results) -> None:
-    for number, name in enumerate(results.finished):
-        axes.plot([], [], _marker(number), color=FAINT, markersize=4.5, mew=0, label=name)
+    for name, marker in _markers(results):
+        axes.plot([], [], marker, color=FAINT, markersize=4.5, mew=0, label=name)
     if results.aggregate is not None:
         axes.plot([], [], "o-", color=INK, lw=2.0, markersize=6.5, label="all homes, 95 % interval")
     figure.legend(loc="outside upper left", ncols=4)
 
 
 def _words(results: Results) -> Words:
-    told = []
-    for name, by_home in shares_by_home(results).items():
-        mean = over_homes(results, name).mean
-        overall = "" if mean is None else f"{percent(mean)} over all, "
-        if by_home:
-            told.append(f"{name} {overall}{', '.join(f'{home} {percent(s)}' for home, s in by_home.items())}")
-    has_mean = any(over_homes(results, name).mean is not None for name in shares_by_home(results))
+    shares = shares_by_home(results)
+    means = {name: over_homes(results, name).mean for name in shares}
+    overall = {name: "" if mean is None else f"{percent(mean)} over all, " for name, mean in means.items()}
+    told = "; ".join(
+        f"{name} {overall[name]}{', '.join(f'{home} {percent(share)}' for home, share in by_home.items())}"
+        for name, by_home in shares.items()
+    )
     coloured = (
         "The coloured mark and the number are the mean over all homes, the bar is its 95 % interval for "
         "other seeds on the same homes. "
     )
     return Words(
         "Share of savings on every home",
-        f"Points of the share of savings: {'; '.join(told)}.",
-        f"One grey mark a home, the mean over its seeds. {coloured if has_mean else ''}Shares far below zero "
-        "are written at the left edge.",
+        f"Points of the share of savings: {told}.",
+        f"One grey mark a home, the mean over its seeds. {coloured if any(overall.values()) else ''}"
+        "Shares far below zero are written at the left edge.",
     )
 
 
 SHARE_OF_SAVINGS = ReportFigure[Results, Results](
     name="share-of-savings",
-    section=Section("Home by home"),
-    needs=lambda it: it if len(it.finished) > 1 and any(shares_by_home(it).values()) else None,
+    section=ReportSection("Home by home"),
+    needs=lambda results: results if len(results.finished) > 1 and shares_by_home(results) else None,
     draw=homes_figure,
     words=_words,
 )

@@ -1,23 +1,21 @@
 """What every method did in a week: one small panel each, temperature above, battery below."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.dates import num2date
 from matplotlib.figure import Figure
-from matplotlib.gridspec import GridSpec, GridSpecFromSubplotSpec
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from hemma.methods.looks import GREEN
 from hemma.report.drawing.canvas import FAINT, midnights, new_figure
-from hemma.report.drawing.over_time import PRICE_COLOUR, step_values
-from hemma.report.figures.figure import HomeFigure, Section, Words
+from hemma.report.drawing.over_time import PRICE_LOOK, step_values
+from hemma.report.figures.figure import HomeFigure, ReportSection, Words
 from hemma.report.methods import look_of
 from hemma.report.numbers import plain
-from hemma.report.subject import HomeSubject
-from hemma.report.week import Week
+from hemma.report.subject import HomeSubject, Week
 from hemma.results.results import HomeResults
 
 COLUMNS = 3
@@ -30,48 +28,36 @@ _PRICE_SHARE = 0.75
 """The highest price reaches to this part of the battery's panel."""
 
 
-@dataclass(frozen=True)
-class SmallPanels:
-    """The two panels of a method."""
-
-    temperature: Axes
-    battery: Axes
-
-
-@dataclass(frozen=True)
-class Scales:
-    """Limits that all small panels share, so that they can be compared."""
-
-    temperature: tuple[float, float]
-    """[degC]."""
-    energy: tuple[float, float]
-    """[kWh]."""
-
-
 def traces_figure(home: HomeResults, week: Week) -> Figure:
-    """Small multiples of all methods that have a schedule, in the order of the table."""
-    rows = -(-len(week.schedules) // COLUMNS)
-    figure = new_figure(_WIDTH, _HEAD + _ROW_HEIGHT * rows + _FOOT - _GAP)
+    """Small multiples of all methods that have a schedule, in the order of the table, on the same scales."""
+    count, schedules = len(week.schedules), week.schedules.values()
+    figure = new_figure(_WIDTH, _HEAD + _ROW_HEIGHT * -(-count // COLUMNS) + _FOOT - _GAP)
     figure.set_layout_engine("none")
-    scales = _scales(home, week)
-    for cell, method in zip(_cells(figure, len(week.schedules)), week.schedules, strict=True):
-        _draw_temperature(cell.temperature, home, week, method)
-        _draw_battery(cell.battery, week, method)
-        cell.temperature.set_ylim(scales.temperature)
-        cell.battery.set_ylim(scales.energy)
-        _mark_days(cell.temperature, week)
-        _mark_days(cell.battery, week)
+    temperatures = np.concatenate([home.comfort_c, *(one.indoor_temperature for one in schedules)])
+    low, high = temperatures.min(), temperatures.max()
+    margin = 0.08 * (high - low)
+    most = max([1e-3, *(np.max(one.battery_energy) for one in schedules)])
+    for (above, below), (method, schedule) in zip(_cells(figure, count), week.schedules.items(), strict=True):
+        above.set_title(method, fontsize=8.5, pad=2.5)
+        above.axhspan(*home.comfort_c, color=GREEN, alpha=0.12, linewidth=0, zorder=0)
+        above.set_ylim(low - margin, high + margin)
+        _draw_price(below, week)
+        below.set_ylim(0.0, 1.1 * most)
+        for axes, values in ((above, schedule.indoor_temperature), (below, schedule.battery_energy)):
+            axes.plot(week.posts[1:], values, color=look_of(method).colour, linewidth=1.0)
+            axes.set_xlim(week.posts[0], week.posts[-1])
+            axes.set_xticks(midnights(week.posts[0], week.posts[-1]))
+            axes.xaxis.set_major_formatter(lambda days, _: str(num2date(days).day))
     _explain(figure, home, week)
     return figure
 
 
-def _cells(figure: Figure, count: int) -> list[SmallPanels]:
-    """The panels, with labels at the left and at the lower edge only."""
+def _cells(figure: Figure, count: int) -> Iterator[tuple[Axes, Axes]]:
+    """The two panels of each method, with labels at the left and at the lower edge only."""
     width, height = figure.get_size_inches()
-    outer = GridSpec(
+    outer = figure.add_gridspec(
         -(-count // COLUMNS),
         COLUMNS,
-        figure=figure,
         left=_LEFT / width,
         right=1 - _RIGHT / width,
         top=1 - _HEAD / height,
@@ -79,60 +65,22 @@ def _cells(figure: Figure, count: int) -> list[SmallPanels]:
         wspace=0.06,
         hspace=_GAP / (_ROW_HEIGHT - _GAP),
     )
-    cells = []
     for place in range(count):
-        inner = GridSpecFromSubplotSpec(
-            2, 1, outer[divmod(place, COLUMNS)], height_ratios=(1.2, 1.0), hspace=0.1
-        )
-        above, below = figure.add_subplot(inner[0]), figure.add_subplot(inner[1])
+        inner = outer[divmod(place, COLUMNS)].subgridspec(2, 1, height_ratios=(1.2, 1.0), hspace=0.1)
+        above, below = (figure.add_subplot(inner[row]) for row in (0, 1))
         for axes, unit in ((above, "°C"), (below, "kWh")):
             axes.yaxis.set_major_locator(MaxNLocator(3, integer=True))
             axes.tick_params(labelsize=7.0, length=2.0, labelleft=place % COLUMNS == 0)
             axes.set_ylabel(unit if place % COLUMNS == 0 else "", fontsize=7.5)
         above.tick_params(labelbottom=False, bottom=False)
         below.tick_params(labelbottom=place + COLUMNS >= count)
-        cells.append(SmallPanels(above, below))
-    return cells
+        yield above, below
 
 
-def _scales(home: HomeResults, week: Week) -> Scales:
-    temperatures = [schedule.indoor_temperature for schedule in week.schedules.values()]
-    low = float(min([home.comfort_c[0], *map(np.min, temperatures)]))
-    high = float(max([home.comfort_c[1], *map(np.max, temperatures)]))
-    highest = max([1e-3, *(float(np.max(schedule.battery_energy)) for schedule in week.schedules.values())])
-    margin = 0.08 * (high - low)
-    return Scales((low - margin, high + margin), (0.0, 1.1 * highest))
-
-
-def _draw_temperature(axes: Axes, home: HomeResults, week: Week, method: str) -> None:
-    axes.set_title(method, fontsize=8.5, pad=2.5)
-    axes.axhspan(*home.comfort_c, color=GREEN, alpha=0.12, linewidth=0, zorder=0)
-    _line(axes, week.posts[1:], week.schedules[method].indoor_temperature, look_of(method).colour)
-
-
-def _draw_battery(axes: Axes, week: Week, method: str) -> None:
+def _draw_price(axes: Axes, week: Week) -> None:
     lowest, highest = week.price_range
-    price = (step_values(week.exogenous.buying_price) - lowest) / (highest - lowest)
-    axes.fill_between(
-        week.posts,
-        _PRICE_SHARE * price,
-        step="post",
-        color=PRICE_COLOUR,
-        alpha=0.6,
-        linewidth=0,
-        transform=axes.get_xaxis_transform(),
-    )
-    _line(axes, week.posts[1:], week.schedules[method].battery_energy, look_of(method).colour)
-
-
-def _line(axes: Axes, time: np.ndarray, values: np.ndarray, colour: str) -> None:
-    axes.plot(time, values, color=colour, linewidth=1.0)  # pyright: ignore[reportArgumentType]
-
-
-def _mark_days(axes: Axes, week: Week) -> None:
-    axes.set_xlim(week.posts[0], week.posts[-1])
-    axes.set_xticks(midnights(week.posts[0], week.posts[-1]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda days, _: str(num2date(days).day)))
+    price = _PRICE_SHARE * (step_values(week.exogenous.buying_price) - lowest) / (highest - lowest)
+    axes.fill_between(week.posts, price, step="post", transform=axes.get_xaxis_transform(), **PRICE_LOOK)
 
 
 def _explain(figure: Figure, home: HomeResults, week: Week) -> None:
@@ -140,7 +88,7 @@ def _explain(figure: Figure, home: HomeResults, week: Week) -> None:
     price = f"buying price, {lowest:.2g} to {highest:.2g} {home.currency}/kWh"
     patches = [
         Patch(color=GREEN, alpha=0.2, linewidth=0, label="comfort band"),
-        Patch(color=PRICE_COLOUR, alpha=0.6, linewidth=0, label=price),
+        Patch(label=price, **PRICE_LOOK),
     ]
     figure.legend(handles=patches, loc="upper left", ncols=2)
     start = num2date(float((week.posts[0] - np.datetime64(0, "D")) / np.timedelta64(1, "D")))
@@ -173,7 +121,7 @@ def _range(values: np.ndarray) -> str:
 
 TRACES_WEEK = HomeFigure[HomeSubject](
     name="traces-week",
-    section=Section("A week of every method"),
+    section=ReportSection("A week of every method"),
     needs=lambda subject: subject if subject.week.schedules else None,
     draw=lambda subject: traces_figure(subject.home, subject.week),
     words=_words,

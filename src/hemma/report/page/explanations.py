@@ -1,68 +1,60 @@
 """How to read the report: what each number means, and what it does not say."""
 
+from collections.abc import Iterable
+
 from hemma.report.comfort import REACHABLE
 from hemma.report.methods import in_order, meaning_of
 from hemma.report.numbers import DASH
 from hemma.report.tables.aggregate import INTERVALS
 from hemma.results.results import HomeResults, Results
 
-_METRICS = (
-    (
-        "Energy cost",
+_METRICS = {
+    "Energy cost": (
         "X1 + X2 summed over the test period: X1 is what the energy bought costs minus what the energy sold "
-        "earns, X2 is the ageing of the battery. Negative means that the home earns money.",
+        "earns, X2 is the ageing of the battery. Negative means that the home earns money."
     ),
-    (
-        "Mean deviation, total deviation",
+    "Mean deviation, total deviation": (
         "X3 is the distance of the indoor temperature from the comfort band at the end of a slot, 0 inside "
-        "the band. The mean deviation is the mean of X3 over all slots, the total is the sum.",
+        "the band. The mean deviation is the mean of X3 over all slots, the total is the sum."
     ),
-    (
-        "Optimum, perfect information",
+    "Optimum, perfect information": (
         "The least cost that any controller could have reached had it known all prices, weather and loads of "
         "the test period beforehand, with the least deviation that is possible. It is proven by branch and "
         "bound, not estimated; where a gap to the proven lower bound is left, the table says 'not proven'. "
-        "Nobody can run it: it is the end of the scale.",
+        "Nobody can run it: it is the end of the scale."
     ),
-    (
-        "Equal comfort",
+    "Equal comfort": (
         "A home that drifts warm in summer or cold in winter looks cheap. So each method is compared with "
         "perfect information that may cause the same total deviation D as the method itself did: optimum(D). "
         "no-battery(D) is the same problem without the battery. Where even perfect information misses the "
         f"comfort band by more than {REACHABLE:g} °C on average, costs are compared at the same deviation, "
-        "and nobody speaks of equal comfort.",
+        "and nobody speaks of equal comfort."
     ),
-    ("Gap to optimum", "(cost − optimum(D)) / |optimum(D)|: what not knowing the future costs."),
-    (
-        "Share of savings",
+    "Gap to optimum": "(cost − optimum(D)) / |optimum(D)|: what not knowing the future costs.",
+    "Share of savings": (
         "(no-battery(D) − cost) / (no-battery(D) − optimum(D)): 100 % is perfect information, 0 % is no "
-        "better than having no battery. Unlike the gap it keeps its meaning where the optimum is near zero.",
+        "better than having no battery. Unlike the gap it keeps its meaning where the optimum is near zero."
     ),
-    (
-        "Regret and its parts",
+    "Regret and its parts": (
         "cost − optimum(D) in money. Not knowing the future: the regret of a planner with the best causal "
         "forecast and the true building. Identified thermal model: what that planner loses by planning "
         "through the identified network. Policy: the rest, by which a method decides worse than that "
-        "planner. A part below zero saves. The policy part of a planner's own row is zero.",
+        "planner. A part below zero saves. The policy part of a planner's own row is zero."
     ),
-    (
-        "Interquartile mean, worst seed",
+    "Interquartile mean, worst seed": (
         "The interquartile mean leaves out the best and the worst quarter of the runs, so that one run gone "
         "astray does not move it. The worst seed is the run farthest from optimum(D): what "
-        "an owner with bad luck gets.",
+        "an owner with bad luck gets."
     ),
-    (
-        "Probability of improvement",
+    "Probability of improvement": (
         "How probably a run of one method, drawn at random, has a lower regret than a run of another; ties "
-        "count half. 0.5 means no difference.",
+        "count half. 0.5 means no difference."
     ),
-)
-
+}
 _DASH = (
-    f"En dash ({DASH})",
     "No such number: a method without training or without seeds, the worst of a single run, a gap to an "
     "optimum of zero, a share of savings where a battery can save nothing, or a result that is not in "
-    "the folder.",
+    "the folder."
 )
 
 LIMITS = (
@@ -74,9 +66,9 @@ LIMITS = (
 )
 
 
-def metric_meanings(results: Results) -> list[tuple[str, str]]:
+def metric_meanings(results: Results) -> dict[str, str]:
     """What each number means, with the kind of interval that these results have."""
-    return [*_METRICS, ("Seeds and intervals", _seeds_and_intervals(results)), _DASH]
+    return {**_METRICS, "Seeds and intervals": _seeds_and_intervals(results), f"En dash ({DASH})": _DASH}
 
 
 def _seeds_and_intervals(results: Results) -> str:
@@ -94,32 +86,25 @@ def _seeds_and_intervals(results: Results) -> str:
     )
 
 
-def method_meanings(results: Results) -> list[tuple[str, str]]:
+def method_meanings(results: Results) -> dict[str, str]:
     """The methods of all homes, each with what it is; the length of the demonstrations where it is known."""
-    present = in_order(
-        dict.fromkeys(
-            name
-            for home in results.finished.values()
-            for name in (*home.methods, *(runs.method for runs in home.data_efficiency))
-        )
-    )
-    return [
-        (name, meaning + _days(name, results.finished.values()))
-        for name in present
-        if (meaning := meaning_of(name)) is not None
-    ]
+    homes = results.finished.values()
+    named = (name for home in homes for name in (*home.methods, *(it.method for it in home.data_efficiency)))
+    meanings = {name: meaning_of(name) for name in in_order(dict.fromkeys(named))}
+    return {name: text + _days(name, homes) for name, text in meanings.items() if text is not None}
 
 
-def _days(method: str, homes) -> str:
+def _days(method: str, homes: Iterable[HomeResults]) -> str:
     days = sorted({home.demonstration_days[method] for home in homes if method in home.demonstration_days})
     return f" ({' or '.join(f'{length:g}' for length in days)} days)" if days else ""
 
 
-def data_facts(home: HomeResults) -> list[tuple[str, str]]:
+def data_facts(home: HomeResults) -> dict[str, str]:
     """Where a home's data come from and how they were used."""
-    facts = [("Source", home.source or "not stated"), ("Slot length", f"{home.slot_length_h:g} h")]
-    if home.training is not None:
-        facts.append(("Training period", f"{home.training.slots} slots from {home.training.start}"))
-    facts.append(("Test period", f"{home.test.slots} slots from {home.test.start}"))
-    facts.append(("Comfort band", f"{home.comfort_c[0]:g} to {home.comfort_c[1]:g} °C"))
-    return facts
+    periods = {"Training period": home.training, "Test period": home.test}
+    return {
+        "Source": home.source or "not stated",
+        "Slot length": f"{home.slot_length_h:g} h",
+        **{name: f"{one.slots} slots from {one.start}" for name, one in periods.items() if one is not None},
+        "Comfort band": f"{home.comfort_c[0]:g} to {home.comfort_c[1]:g} °C",
+    }

@@ -11,16 +11,6 @@ from hemma.results.records import MethodRuns
 from hemma.results.results import HomeResults
 
 DEFAULT = "default"
-GLANCE_HEADINGS = (
-    "Home",
-    "Method",
-    "Energy cost",
-    "Rule",
-    "Perfect information",
-    "Share of savings",
-    "Gap to optimum",
-    "Mean deviation",
-)
 
 
 @dataclass(frozen=True)
@@ -46,6 +36,11 @@ def headline(name: str, home: HomeResults) -> Headline:
     return Headline(title=_title(home, subject, method), text=" ".join(filter(None, said)))
 
 
+def _cost(home: HomeResults, method: str) -> str:
+    """What a method costs; a dash where the home does not have it."""
+    return money(home.methods[method].mean.energy_cost if method in home.methods else None, home.currency)
+
+
 def saved_against_rule(home: HomeResults, method: str) -> float | None:
     """(Rule's cost - the method's cost) / Rule's cost; None without Rule or where Rule earns money."""
     if "Rule" not in home.methods or method == "Rule":
@@ -57,7 +52,7 @@ def saved_against_rule(home: HomeResults, method: str) -> float | None:
 def _title(home: HomeResults, subject: str, method: MethodRuns) -> str:
     saved, share = saved_against_rule(home, subject), method.mean.share_of_savings
     if saved is None:
-        return f"{subject} costs {money(method.mean.energy_cost, home.currency)}"
+        return f"{subject} costs {_cost(home, subject)}"
     against = f"{subject} costs {percent(abs(saved))} {'less' if saved >= 0 else 'more'} than Rule"
     return against if share is None else f"{against} and keeps {percent(share)} of the possible savings"
 
@@ -72,14 +67,14 @@ def _cost_sentence(name: str, home: HomeResults, subject: str, method: MethodRun
         spread = " (one seed, so nobody knows its spread)" if len(method.runs) == 1 else ""
     return (
         f"On {name}, over {plain(round(home.test_days, 1))} days from {_date(home.test.start)}, "
-        f"{subject} costs {money(method.mean.energy_cost, home.currency)}{spread}."
+        f"{subject} costs {_cost(home, subject)}{spread}."
     )
 
 
 def _reference_sentence(home: HomeResults, subject: str) -> str:
     parts = []
     if "Rule" in home.methods and subject != "Rule":
-        parts.append(f"Rule costs {money(home.methods['Rule'].mean.energy_cost, home.currency)}")
+        parts.append(f"Rule costs {_cost(home, 'Rule')}")
     if home.optimum is not None and home.optimum.energy_cost is not None:
         unproven = "" if is_proven(home) else " (not proven)"
         best = money(home.optimum.energy_cost, home.currency)
@@ -93,18 +88,16 @@ def _savings_sentence(home: HomeResults, subject: str, method: MethodRuns) -> st
     if share is None:
         return ""
     spread = "" if interval is None else f" ({hundredths(interval[0])} to {percent(interval[1])})"
-    condition = at_equal_comfort(home).capitalize()
-    kept = f"{subject} keeps {percent(share)}{spread}"
-    return f"{condition} {kept} of the savings that a battery makes possible."
+    kept = f"{at_equal_comfort(home).capitalize()} {subject} keeps {percent(share)}{spread}"
+    return f"{kept} of the savings that a battery makes possible."
 
 
 def _default_sentence(home: HomeResults, subject: str) -> str:
     """What the controller would do that a home runs, where the report speaks of another."""
     if subject == DEFAULT or DEFAULT not in home.methods:
         return ""
-    mean = home.methods[DEFAULT].mean
-    cost = f"The default controller costs {money(mean.energy_cost, home.currency)}"
-    share = mean.share_of_savings
+    cost = f"The default controller costs {_cost(home, DEFAULT)}"
+    share = home.methods[DEFAULT].mean.share_of_savings
     return f"{cost}." if share is None else f"{cost} and keeps {percent(share)} of them."
 
 
@@ -130,21 +123,20 @@ def _date(start: str) -> str:
     return f"{moment.day} {moment:%B %Y}"
 
 
-def summary_cells(home: HomeResults) -> tuple[str, ...]:
-    """What stands below ``GLANCE_HEADINGS`` from the second on."""
+def at_a_glance(home: HomeResults) -> dict[str, str]:
+    """The main method beside Rule and perfect information, by heading."""
     subject = main_method(home.methods)
     mean = home.methods[subject].mean
-    rule = home.methods["Rule"].mean.energy_cost if "Rule" in home.methods else None
-    best = home.optimum.energy_cost if home.optimum else None
-    return (
-        subject,
-        money(mean.energy_cost, home.currency),
-        money(rule, home.currency),
-        money(best, home.currency) + ("" if is_proven(home) else " (not proven)"),
-        percent(mean.share_of_savings),
-        percent(mean.gap_to_optimum),
-        degrees(mean.mean_temperature_deviation),
-    )
+    best = money(home.optimum.energy_cost if home.optimum else None, home.currency)
+    return {
+        "Method": subject,
+        "Energy cost": _cost(home, subject),
+        "Rule": _cost(home, "Rule"),
+        "Perfect information": best if is_proven(home) else f"{best} (not proven)",
+        "Share of savings": percent(mean.share_of_savings),
+        "Gap to optimum": percent(mean.gap_to_optimum),
+        "Mean deviation": degrees(mean.mean_temperature_deviation),
+    }
 
 
 def range_of_shares(homes: list[HomeResults]) -> str:

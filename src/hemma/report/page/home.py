@@ -1,9 +1,7 @@
 """The parts of the report about one home."""
 
-from collections.abc import Callable
-
 from hemma.report import figures
-from hemma.report.figures.figure import IDENTIFICATION, Part, Picture, Section
+from hemma.report.figures.figure import IDENTIFICATION, Part, Picture
 from hemma.report.figures.regret import REGRET_SECTION
 from hemma.report.methods import main_method
 from hemma.report.numbers import SPACE, degrees, money, seconds
@@ -20,7 +18,7 @@ from hemma.report.page.markup import (
     table,
 )
 from hemma.report.tables.recommendation import HEADINGS, recommendation_rows, recommendation_sentence
-from hemma.report.tables.results import TABLE_HEADINGS, TableRow, is_proven
+from hemma.report.tables.results import TableRow, is_proven
 from hemma.results.results import HomeResults
 
 REGRET_HEADINGS = ("Method", "Regret", "Not knowing the future", "Identified thermal model", "Policy")
@@ -28,9 +26,10 @@ REGRET_HEADINGS = ("Method", "Regret", "Not knowing the future", "Identified the
 
 def results_part(name: str, home: HomeResults, rows: list[TableRow], pictures: dict[str, Picture]) -> str:
     """The table, the figures of what the methods did, and which of them the home should have."""
-    found = by_group({row.method: row.measures for row in rows}, main_method(home.methods))
+    found = by_group({row.method: row.measures.values() for row in rows}, main_method(home.methods))
+    headings = ("Method", *rows[0].measures)
     return (
-        table("Mean over the seeds [95 % interval for other seeds]", TABLE_HEADINGS, found)
+        table("Mean over the seeds [95 % interval for other seeds]", headings, found)
         + _optimum_line(home)
         + _sections(Part.RESULTS, home, pictures)
         + recommendation_section(name, home)
@@ -56,9 +55,10 @@ def _sections(part: Part, home: HomeResults, pictures: dict[str, Picture]) -> st
         members = [one for one in known if one.section == section]
         shown = [figure(pictures[one.name], one.is_wide) for one in members if one.name in pictures]
         missing = [paragraph(one.missing, "faint") for one in members if one.name not in pictures]
-        above, below = _ABOVE.get(section, _nothing), _BELOW.get(section, _nothing)
+        above = _identification(home) if section == IDENTIFICATION else ""
+        below = _regret_table(home) if section == REGRET_SECTION else ""
         grid = f'<div class="figures">{"".join(shown)}</div>' if shown else ""
-        text += heading(3, section.title) + above(home) + grid + "".join(missing) + below(home)
+        text += heading(3, section.title) + above + grid + "".join(missing) + below
     return text
 
 
@@ -112,13 +112,3 @@ def _identification(home: HomeResults) -> str:
         + table("Root mean square error", ("Horizon", "Error"), [RowGroup(rows)])
         + paragraph(f"Fitting the network took {seconds(home.identification.seconds)}.")
     )
-
-
-def _nothing(home: HomeResults) -> str:
-    return ""
-
-
-_ABOVE: dict[Section, Callable[[HomeResults], str]] = {IDENTIFICATION: _identification}
-"""What stands above the figures of a section."""
-_BELOW: dict[Section, Callable[[HomeResults], str]] = {REGRET_SECTION: _regret_table}
-"""What stands below them."""

@@ -4,15 +4,17 @@ import base64
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
+from importlib.resources import files
 
 from hemma.report.figures.figure import Picture
 from hemma.report.methods import grouped
 from hemma.report.numbers import DASH
-from hemma.report.page.stylesheet import STYLESHEET
 from hemma.report.tables.cells import Cell
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 """What the browser may load for a page: nothing from anywhere."""
+_STYLESHEET = (files("hemma.report.page") / "report.css").read_text(encoding="utf-8")
+"""One column that fits any screen, dark where the reader wants it, plain on paper."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ def document(title: str, opening: str, content: str) -> str:
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{STYLESHEET}</style></head><body>"
+        f"<title>{escape(title)}</title><style>\n{_STYLESHEET}</style></head><body>"
         f"<header>{opening}</header><main>{content}</main></body></html>\n"
     )
 
@@ -59,9 +61,10 @@ def bullets(items: Iterable[str]) -> str:
     return f"<ul>{listed}</ul>" if listed else ""
 
 
-def definitions(entries: Iterable[tuple[str, str]]) -> str:
+def definitions(meanings: Mapping[str, str]) -> str:
     """Terms and what they mean."""
-    return "<dl>" + "".join(f"<dt>{escape(a)}</dt><dd>{escape(b)}</dd>" for a, b in entries) + "</dl>"
+    terms = (f"<dt>{escape(term)}</dt><dd>{escape(text)}</dd>" for term, text in meanings.items())
+    return f"<dl>{''.join(terms)}</dl>"
 
 
 def by_group(rows: Mapping[str, Iterable[Cell | str]], main: str = "") -> list[RowGroup]:

@@ -3,15 +3,9 @@
 from hemma.report import figures
 from hemma.report.figures.figure import Picture
 from hemma.report.methods import main_method
-from hemma.report.page.headline import GLANCE_HEADINGS, summary_cells
+from hemma.report.page.headline import at_a_glance
 from hemma.report.page.markup import Row, RowGroup, by_group, figure, heading, paragraph, table
-from hemma.report.tables.aggregate import (
-    AGGREGATE_HEADINGS,
-    INTERVALS,
-    PAIRED_HEADINGS,
-    aggregate_rows,
-    paired_rows,
-)
+from hemma.report.tables.aggregate import INTERVALS, PAIRED_HEADINGS, aggregate_rows, paired_rows
 from hemma.results.results import Results
 
 
@@ -22,12 +16,14 @@ def overview(results: Results, pictures: dict[str, Picture]) -> str:
         for one in figures.FIGURES_OVER_HOMES
         if one.name in pictures
     ]
-    glance = [RowGroup([Row(name, summary_cells(home)) for name, home in results.finished.items()])]
+    glance = {name: at_a_glance(home) for name, home in results.finished.items()}
+    headings = ("Home", *next(iter(glance.values())))
+    rows = [RowGroup([Row(name, cells.values()) for name, cells in glance.items()])]
     return (
         _methods_tables(results)
         + "".join(shown)
         + heading(2, "The homes")
-        + table("The homes at a glance; means over the seeds", GLANCE_HEADINGS, glance)
+        + table("The homes at a glance; means over the seeds", headings, rows)
     )
 
 
@@ -36,11 +32,12 @@ def _methods_tables(results: Results) -> str:
     if not rows:
         return paragraph("No statistics over homes in this folder.", "faint")
     main, paired = main_method(rows), paired_rows(results, main_method(rows))
+    cells = {name: by_heading.values() for name, by_heading in rows.items()}
     counted = len((results.aggregate and results.aggregate.homes) or results.finished)
     caption = f"Every method over {counted} homes, means over homes and seeds"
     against = f"{main} against the others, home by home; percentage points, above zero {main} keeps more"
     return (
-        table(caption, AGGREGATE_HEADINGS, by_group(rows, main))
+        table(caption, ("Method", *rows[main]), by_group(cells, main))
         + paragraph(f"{INTERVALS[0].upper()}{INTERVALS[1:]}.", "faint")
         + (table(against, PAIRED_HEADINGS, by_group(paired)) if paired else "")
     )

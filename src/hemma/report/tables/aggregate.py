@@ -7,15 +7,6 @@ from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell
 from hemma.results.findings import AggregateMethod, PairedDifference
 from hemma.results.results import Results
 
-AGGREGATE_HEADINGS = (
-    "Method",
-    "Share of savings",
-    "From home to home",
-    "Interquartile mean",
-    "Worst run",
-    "Gap to optimum",
-    "Mean deviation",
-)
 PAIRED_HEADINGS = ("Against", "Points of the share of savings", "From home to home", "Better on")
 INTERVALS = (
     "in brackets the 95 % interval of the mean for other seeds on the same homes; 'from home to home' is the "
@@ -25,8 +16,8 @@ INTERVALS = (
 """What the two intervals of the table are over."""
 
 
-def aggregate_rows(results: Results) -> dict[str, tuple[Cell, ...]]:
-    """By method what stands below ``AGGREGATE_HEADINGS`` from the second on; nothing for a single home."""
+def aggregate_rows(results: Results) -> dict[str, dict[str, Cell]]:
+    """By method and heading; nothing for a single home."""
     found = results.aggregate.methods if results.aggregate else {}
     return {name: _cells(results, name, method) for name, method in found.items()}
 
@@ -59,16 +50,16 @@ def worst_over_homes(results: Results, method: str) -> Cell:
     return Cell(percent(share), home if seed is None else f"{home}, seed {seed}")
 
 
-def _cells(results: Results, name: str, found: AggregateMethod) -> tuple[Cell, ...]:
+def _cells(results: Results, name: str, found: AggregateMethod) -> dict[str, Cell]:
     share, gap, deviation = found.share_of_savings, found.gap_to_optimum, found.mean_temperature_deviation
-    return (
-        PERCENT.cell(share.mean, share.interval),
-        Cell(PERCENT.range(share.interval_over_homes) or DASH),
-        Cell(percent(share.interquartile_mean)),
-        worst_over_homes(results, name),
-        PERCENT.cell(gap.mean, gap.interval),
-        DEGREES.cell(deviation.mean, deviation.interval),
-    )
+    return {
+        "Share of savings": PERCENT.cell(share.mean, share.interval),
+        "From home to home": Cell(PERCENT.range(share.interval_over_homes) or DASH),
+        "Interquartile mean": Cell(percent(share.interquartile_mean)),
+        "Worst run": worst_over_homes(results, name),
+        "Gap to optimum": PERCENT.cell(gap.mean, gap.interval),
+        "Mean deviation": DEGREES.cell(deviation.mean, deviation.interval),
+    }
 
 
 def _paired_cells(pair: PairedDifference) -> tuple[Cell, ...]:

@@ -1,13 +1,17 @@
 """The cells of all tables: a value, and below it something smaller."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from hemma.evaluation import Interval
+from hemma.evaluation import Measures
 from hemma.report.numbers import DASH, decimals, degrees, fine, hundredths, money, percent
+from hemma.results.records import MethodRuns
 
-Bounds = tuple[float, float] | Interval | None
+Bounds = tuple[float, float] | None
 """Low and high end of an interval, or None where there is none."""
+Metric = Callable[[Measures[Any]], Any]
+"""Which of the metrics: a number of a run or of means, two of intervals."""
 
 
 @dataclass(frozen=True)
@@ -36,14 +40,15 @@ class Notation:
 
     def range(self, bounds: Bounds) -> str:
         """``[low, high]``, or nothing."""
-        if bounds is None:
-            return ""
-        low, high = (bounds.low, bounds.high) if isinstance(bounds, Interval) else bounds
-        return f"[{self.bare(low)}, {self.bare(high)}]"
+        return "" if bounds is None else f"[{self.bare(bounds[0])}, {self.bare(bounds[1])}]"
 
     def cell(self, mean: float | None, bounds: Bounds = None) -> Cell:
         """The mean with its unit above its interval."""
         return Cell(self.full(mean), self.range(bounds))
+
+    def of(self, method: MethodRuns, metric: Metric) -> Cell:
+        """A method's mean of the metric above its interval."""
+        return self.cell(metric(method.mean), metric(method.interval))
 
 
 PERCENT = Notation(percent, hundredths)
@@ -55,3 +60,9 @@ NOTHING = Cell(DASH)
 def in_money(currency: str) -> Notation:
     """Amounts of a currency, to the cent."""
     return Notation(lambda value: money(value, currency), lambda value: decimals(value, 2))
+
+
+def in_markdown(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table as Markdown, without a line break behind its last row."""
+    lines = (headings, ("---",) * len(headings), *rows)
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)

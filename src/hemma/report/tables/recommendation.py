@@ -1,8 +1,9 @@
 """Which controller a home should have, in plain words and as a table."""
 
+from functools import partial
+
 from hemma.report.comfort import at_equal_comfort
 from hemma.report.numbers import degrees, money
-from hemma.results.records import JudgedMethod
 from hemma.results.results import HomeResults
 
 DIGITS = 3
@@ -36,15 +37,14 @@ def recommendation_sentence(name: str, home: HomeResults) -> str:
 
 def recommendation_rows(home: HomeResults) -> list[tuple[str, ...]]:
     """The cells of the table, a row each method."""
-    found = home.recommendation
-    return [] if found is None else [_row(one, home.currency) for one in found.judged]
-
-
-def _row(one: JudgedMethod, currency: str) -> tuple[str, ...]:
-    error = f" ± {money(one.standard_error, currency, DIGITS)}"
-    return (
-        one.method,
-        money(one.daily_cost, currency, DIGITS),
-        money(one.excess, currency, DIGITS) + (error if one.excess else ""),
-        degrees(one.mean_temperature_deviation),
-    )
+    judged = home.recommendation.judged if home.recommendation else ()
+    cost = partial(money, currency=home.currency, digits=DIGITS)
+    return [
+        (
+            one.method,
+            cost(one.daily_cost),
+            cost(one.excess) + (f" ± {cost(one.standard_error)}" if one.excess else ""),
+            degrees(one.mean_temperature_deviation),
+        )
+        for one in judged
+    ]

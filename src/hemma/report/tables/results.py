@@ -3,25 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from hemma.evaluation import Metrics
 from hemma.report.methods import in_order
 from hemma.report.numbers import DASH, money, percent, seconds
-from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell, in_money
-from hemma.results.records import MethodRuns
+from hemma.report.tables.cells import DEGREES, NOTHING, PERCENT, Cell, Metric, in_money
 from hemma.results.results import HomeResults, Results, load_results
 
-TABLE_HEADINGS = (
-    "Method",
-    "Seeds",
-    "Energy cost",
-    "Trading X1",
-    "Battery X2",
-    "Mean deviation",
-    "Gap to optimum",
-    "Share of savings",
-    "Interquartile mean",
-    "Worst seed",
-    "Training time",
-)
 PROVEN = 1e-6
 """A relative gap between cost and lower bound up to this is a proof."""
 
@@ -32,12 +19,8 @@ class TableRow:
 
     home: str
     method: str
-    measures: tuple[Cell, ...]
-    """What stands below ``TABLE_HEADINGS`` from the second on."""
-
-    def under(self, heading: str) -> Cell:
-        """The cell below that one of ``TABLE_HEADINGS``, which is not the first."""
-        return self.measures[TABLE_HEADINGS.index(heading) - 1]
+    measures: dict[str, Cell]
+    """By heading."""
 
 
 def results_table(source: Path | Results) -> list[TableRow]:
@@ -62,41 +45,33 @@ def is_proven(home: HomeResults) -> bool:
 
 def _gap(home: HomeResults, name: str) -> Cell:
     """Gap to optimum; whoever's perfect information is not proven, or who is it, says so."""
-    mean, interval = home.methods[name].mean, home.methods[name].interval
-    found = PERCENT.cell(mean.gap_to_optimum, interval.gap_to_optimum)
-    if (mean.reference_gap or 0.0) <= PROVEN and (name != "optimum" or is_proven(home)):
+    method = home.methods[name]
+    found = PERCENT.of(method, lambda it: it.gap_to_optimum)
+    if (method.mean.reference_gap or 0.0) <= PROVEN and (name != "optimum" or is_proven(home)):
         return found
     return Cell(found.value, " ".join(part for part in (found.detail, "not proven") if part))
 
 
-def _measures(home: HomeResults, name: str) -> tuple[Cell, ...]:
+def _measures(home: HomeResults, name: str) -> dict[str, Cell]:
     method, currency = home.methods[name], home.currency
-    mean, interval, money_of = method.mean, method.interval, in_money(currency)
-    return (
-        Cell(str(len(method.runs)) if method.is_learned else DASH),
-        money_of.cell(mean.energy_cost, interval.energy_cost),
-        money_of.cell(mean.transaction_cost, interval.transaction_cost),
-        money_of.cell(mean.battery_cost, interval.battery_cost),
-        DEGREES.cell(mean.mean_temperature_deviation, interval.mean_temperature_deviation),
-        _gap(home, name),
-        PERCENT.cell(mean.share_of_savings, interval.share_of_savings),
-        _interquartile_cell(method, currency),
-        _worst_cell(method, currency),
-        Cell(seconds(mean.seconds_to_train)),
-    )
+    money_of, middle = in_money(currency), method.interquartile_mean if len(method.runs) > 1 else None
+    return {
+        "Seeds": Cell(str(len(method.runs)) if method.is_learned else DASH),
+        "Energy cost": money_of.of(method, lambda it: it.energy_cost),
+        "Trading X1": money_of.of(method, lambda it: it.transaction_cost),
+        "Battery X2": money_of.of(method, lambda it: it.battery_cost),
+        "Mean deviation": DEGREES.of(method, lambda it: it.mean_temperature_deviation),
+        "Gap to optimum": _gap(home, name),
+        "Share of savings": PERCENT.of(method, lambda it: it.share_of_savings),
+        "Interquartile mean": _cost_beside(middle, currency, "share", lambda it: it.share_of_savings),
+        "Worst seed": _cost_beside(method.worst_run, currency, "gap", lambda it: it.gap_to_optimum),
+        "Training time": Cell(seconds(method.mean.seconds_to_train)),
+    }
 
 
-def _interquartile_cell(method: MethodRuns, currency: str) -> Cell:
-    middle = method.interquartile_mean
-    if len(method.runs) < 2:
+def _cost_beside(found: Metrics | None, currency: str, word: str, ratio: Metric) -> Cell:
+    """A cost with one of the ratios; a dash where there is a single run."""
+    if found is None:
         return NOTHING
-    share = "" if middle.share_of_savings is None else f"(share {percent(middle.share_of_savings)})"
-    return Cell(money(middle.energy_cost, currency), share)
-
-
-def _worst_cell(method: MethodRuns, currency: str) -> Cell:
-    worst = method.worst_run
-    if worst is None:
-        return NOTHING
-    gap = "" if worst.gap_to_optimum is None else f"(gap {percent(worst.gap_to_optimum)})"
-    return Cell(money(worst.energy_cost, currency), gap)
+    share = ratio(found)
+    return Cell(money(found.energy_cost, currency), "" if share is None else f"({word} {percent(share)})")

@@ -1,15 +1,15 @@
 """``robustness.json``: what the faults do to each method, as it is written and as it is read."""
 
 from pathlib import Path
-from typing import Any, Generic, Literal, TypeVar
+from typing import Generic, TypeVar
 
 from pydantic import Field
 
 from hemma.evaluation import Measures
 from hemma.record import Number, Range, Record
-from hemma.results.ledger import INTERVAL_KIND
 from hemma.results.reading import read_record
 from hemma.results.records import Period
+from hemma.studies.study_file import StudyFile
 
 ROBUSTNESS_FILE = "robustness.json"
 
@@ -69,15 +69,10 @@ class RobustHome(Record):
     faults: tuple[MetFault, ...] = Field(min_length=1)
 
 
-class Robustness(Record):
+class Robustness(StudyFile):
     """The whole file."""
 
-    version: Literal[1] = Field(default=1, alias="schema")
-    hemma: str = ""
-    code: str = ""
     command: str = "hemma robustness"
-    settings: dict[str, Any] = Field(default_factory=dict)
-    interval_kind: str = INTERVAL_KIND
     seed_of_faults: int = 0
     homes: dict[str, RobustHome] = Field(min_length=1)
 

@@ -8,7 +8,8 @@ import numpy as np
 from hemma.checkpoint import write_atomically
 from hemma.report.drawing.canvas import drawing_style, save
 from hemma.report.methods import in_order
-from hemma.report.numbers import DASH, decimals, fine, percent
+from hemma.report.numbers import decimals, fine, percent
+from hemma.report.tables.cells import in_markdown
 from hemma.studies.robustness.figure import robustness_figure
 from hemma.studies.robustness.records import Robustness, load_robustness
 
@@ -53,10 +54,9 @@ def met(found: Robustness, fault: str, method: str) -> Met:
         for table in home.faults
         if table.fault == fault and method in table.methods
     ]
-    shares = [entry.mean.share_of_savings for entry in entries]
     runs = [run.share_of_savings for entry in entries for run in entry.runs]
     return Met(
-        share=_mean(shares),
+        share=_mean([entry.mean.share_of_savings for entry in entries]),
         worst=None if _mean(runs) is None else min(run for run in runs if run is not None),
         deviation=_mean([entry.mean.mean_temperature_deviation for entry in entries]),
         interventions=_mean([entry.interventions for entry in entries]),
@@ -70,9 +70,7 @@ def robustness_rows(found: Robustness) -> list[tuple[str, ...]]:
 
 def robustness_markdown(found: Robustness) -> str:
     """The table, and what the faults are."""
-    headings = ("Fault", *shown(found))
-    rows = [headings, ("---",) * len(headings), *robustness_rows(found)]
-    table = "\n".join(f"| {' | '.join(row)} |" for row in rows)
+    table = in_markdown(("Fault", *shown(found)), robustness_rows(found))
     first = next(iter(found.homes.values()))
     meanings = "\n".join(f"- {one.fault}: {one.meaning}" for one in first.faults)
     return f"{LEGEND}\n\n{table}\n\n{meanings}\n"
@@ -85,7 +83,7 @@ LEGEND = (
 
 
 def _cell(one: Met) -> str:
-    changes = DASH if one.interventions is None else decimals(one.interventions, 0)
+    changes = decimals(one.interventions, 0)
     return f"{percent(one.share)} ({percent(one.worst)}), {fine(one.deviation)}, {changes}"
 
 

@@ -1,14 +1,13 @@
 """``transfer.json``: what each method made of each changed home, as it is written and as it is read."""
 
 from pathlib import Path
-from typing import Any, Literal
 
 from pydantic import Field
 
 from hemma.record import Number, Range, Record
-from hemma.results.ledger import INTERVAL_KIND
 from hemma.results.reading import read_record
 from hemma.results.records import MethodRuns, Period
+from hemma.studies.study_file import StudyFile
 
 TRANSFER_FILE = "transfer.json"
 
@@ -35,15 +34,10 @@ class ChangedHome(Record):
     paired: tuple[SeedPairs, ...] = ()
 
 
-class Transfer(Record):
+class Transfer(StudyFile):
     """The whole file."""
 
-    version: Literal[1] = Field(default=1, alias="schema")
-    hemma: str = ""
-    code: str = ""
     command: str = "hemma transfer"
-    settings: dict[str, Any] = Field(default_factory=dict)
-    interval_kind: str = INTERVAL_KIND
     home: str
     source: str = ""
     currency: str

@@ -1,13 +1,14 @@
 """The figures and the table of a transfer folder."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from hemma.checkpoint import write_atomically
 from hemma.report.drawing.canvas import drawing_style, save
-from hemma.report.numbers import degrees, fine, hundredths, percent
+from hemma.report.numbers import hundredths
+from hemma.report.tables.cells import DEGREES, PERCENT, Cell, in_markdown
 from hemma.studies.transfer.figure import transfer_figure
-from hemma.studies.transfer.records import ChangedHome, Transfer, load_transfer
+from hemma.studies.transfer.records import Transfer, load_transfer
 from hemma.studies.transfer.reward_figure import BatteryMap, ComfortMap, battery_figure, comfort_figure
 
 FIGURES, TABLE_FILE = "figures", "transfer.md"
@@ -32,51 +33,30 @@ def write_transfer_report(folder: Path) -> Transfer:
 
 def transfer_rows(found: Transfer) -> list[tuple[str, ...]]:
     """The cells of the table below ``HEADINGS``: means and 95 % intervals."""
-    return [row for name, place in found.places.items() for row in _rows(name, place)]
+    return [
+        (
+            name,
+            title,
+            str(len(method.runs)),
+            str(PERCENT.of(method, lambda it: it.share_of_savings)),
+            str(DEGREES.of(method, lambda it: it.mean_temperature_deviation)),
+        )
+        for name, place in found.places.items()
+        for title, method in place.methods.items()
+    ]
 
 
 def transfer_markdown(found: Transfer) -> str:
     """The same as a table in Markdown, with what is compared seed by seed below it."""
-    rows = [HEADINGS, ("---",) * len(HEADINGS), *transfer_rows(found)]
-    table = "\n".join(f"| {' | '.join(row)} |" for row in rows)
-    return f"{table}\n\n" + "\n".join(f"- {line}" for line in paired_lines(found)) + "\n"
+    paired = "\n".join(f"- {line}" for line in paired_lines(found))
+    return f"{in_markdown(HEADINGS, transfer_rows(found))}\n\n{paired}\n"
 
 
 def paired_lines(found: Transfer) -> list[str]:
     """What each method keeps more than the policy carried over, in points of the savings, seed by seed."""
     return [
         f"{name}: {pair.method} less {pair.over}: "
-        f"{_with_interval(pair.mean, pair.interval, hundredths)} points"
+        f"{Cell(hundredths(pair.mean), PERCENT.range(pair.interval))} points"
         for name, place in found.places.items()
         for pair in place.paired
     ]
-
-
-def _rows(name: str, place: ChangedHome) -> list[tuple[str, ...]]:
-    return [
-        (
-            name,
-            title,
-            str(len(method.runs)),
-            _with_interval(
-                method.mean.share_of_savings, method.interval.share_of_savings, hundredths, percent
-            ),
-            _with_interval(
-                method.mean.mean_temperature_deviation,
-                method.interval.mean_temperature_deviation,
-                fine,
-                degrees,
-            ),
-        )
-        for title, method in place.methods.items()
-    ]
-
-
-def _with_interval(
-    mean: float | None,
-    interval: tuple[float, float] | None,
-    bare: Callable[[float | None], str],
-    full: Callable[[float | None], str] | None = None,
-) -> str:
-    text = (full or bare)(mean)
-    return text if interval is None else f"{text} [{bare(interval[0])}, {bare(interval[1])}]"

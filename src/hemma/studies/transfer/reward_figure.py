@@ -7,8 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
-from matplotlib.contour import QuadContourSet
+from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure, FigureBase
 from matplotlib.patches import Patch
 
@@ -20,9 +19,7 @@ from hemma.report.numbers import plain
 DISCHARGE_TO_CHARGE = LinearSegmentedColormap.from_list(
     "power", ["#D55E00", "#F3C9A8", "#FFFFFF", "#A9D0EA", "#0072B2"]
 )
-COOL_TO_WARM = LinearSegmentedColormap.from_list(
-    "heat", ["#0072B2", "#A9D0EA", "#FFFFFF", "#F3C9A8", "#D55E00"]
-)
+COOL_TO_WARM = DISCHARGE_TO_CHARGE.reversed()
 DISAGREE = "/////"
 LEVELS = 14
 """Bounds of the steps of colour, an even number so that the middle step is white."""
@@ -34,6 +31,9 @@ TEMPERATURE_SPREAD = 0.2
 """Runs disagree where their standard deviation is more than this [degC]."""
 REACH = 1.5
 """Degrees above and below the edge of comfort that the colours of the comfort map tell apart."""
+
+Runs = Float[np.ndarray, "runs rows columns"]
+"""A map of each run."""
 
 
 @dataclass(frozen=True)
@@ -61,27 +61,20 @@ class ComfortMap:
 def battery_figure(maps: Sequence[BatteryMap]) -> Figure:
     """A column an hour; above what the whole r pays best, below what g alone does."""
     figure = new_figure(9.2, 5.2)
-    axes = figure.subplots(2, len(maps), sharex=True, sharey=True, squeeze=False)
+    panels = figure.subplots(2, len(maps), sharex=True, sharey=True, squeeze=False)
     limit = max(float(np.max(np.abs(one.found.battery_power))) for one in maps)
-    drawn = None
-    for column, one in enumerate(maps):
-        for row, paid in enumerate((one.found.reward, one.found.ground)):
+    levels, spread = np.linspace(-limit, limit, LEVELS), POWER_SPREAD * limit
+    for (above, below), one in zip(panels.T, maps, strict=True):
+        for axes, paid in ((above, one.found.reward), (below, one.found.ground)):
             wanted = np.asarray(preferred(one.found.battery_power, paid))
-            drawn = _field(axes[row, column], one.grid, wanted, np.linspace(-limit, limit, LEVELS))
-            _hatch(axes[row, column], one.grid, wanted, POWER_SPREAD * limit)
-        axes[0, column].set_title(f"{plain(one.hour)} h")
-        axes[1, column].set_xlabel("Buying price (per kWh)")
-    axes[0, 0].set_ylabel("Paid best by r\nBattery energy (kWh)")
-    axes[1, 0].set_ylabel("Paid best by g alone\nBattery energy (kWh)")
-    if drawn is not None:
-        figure.colorbar(
-            drawn,
-            ax=axes,
-            label="Battery power, charging positive (kW)",
-            aspect=36,
-            ticks=np.linspace(-limit, limit, TICKS),
-        )
-    _explain(figure, f"runs differ by more than {plain(POWER_SPREAD * limit)} kW (standard deviation)")
+            _draw_map(axes, one.grid, wanted, levels, DISCHARGE_TO_CHARGE)
+            _hatch(axes, one.grid, wanted, spread)
+        above.set_title(f"{plain(one.hour)} h")
+        below.set_xlabel("Buying price (per kWh)")
+    panels[0, 0].set_ylabel("Paid best by r\nBattery energy (kWh)")
+    panels[1, 0].set_ylabel("Paid best by g alone\nBattery energy (kWh)")
+    _colour_bar(figure, panels, "Battery power, charging positive (kW)", aspect=36)
+    _explain(figure, f"runs differ by more than {plain(spread)} kW (standard deviation)")
     return figure
 
 
@@ -92,49 +85,41 @@ def comfort_figure(one: ComfortMap) -> Figure:
     """
     figure = new_figure(9.6, 3.7)
     maps, curves = np.asarray(figure.subfigures(1, 2, width_ratios=(1.9, 1.0))).tolist()
-    panels = np.asarray(maps.subplots(1, 2, sharey=True))
+    panels = maps.subplots(1, 2, sharey=True)
     levels = one.edge + np.linspace(-REACH, REACH, LEVELS)
-    drawn = None
-    for axes, paid, name in zip(
-        panels.flat, (one.found.reward, one.found.ground), ("r", "g alone"), strict=True
-    ):
+    for axes, paid, name in zip(panels, (one.found.reward, one.found.ground), ("r", "g alone"), strict=True):
         tried = np.where(np.abs(FRACTIONS) <= one.tried, np.asarray(paid), -np.inf)
         wanted = np.asarray(preferred(one.found.next_temperature, jnp.asarray(tried)))
-        drawn = _field(axes, one.grid, wanted, levels, COOL_TO_WARM)
+        _draw_map(axes, one.grid, wanted, levels, COOL_TO_WARM)
         _hatch(axes, one.grid, wanted, TEMPERATURE_SPREAD)
         axes.set_title(f"Paid best by {name}")
         axes.set_xlabel("Outdoor temperature (°C)")
     panels[0].set_ylabel("Indoor temperature (°C)")
-    if drawn is not None:
-        maps.colorbar(
-            drawn,
-            ax=panels.tolist(),
-            label="Indoors at the end of the slot (°C)",
-            aspect=30,
-            ticks=np.linspace(levels[0], levels[-1], TICKS),
-        )
+    _colour_bar(maps, panels, "Indoors at the end of the slot (°C)", aspect=30)
     _pay(curves.subplots(), one)
     _explain(maps, f"runs differ by more than {plain(TEMPERATURE_SPREAD)} °C (standard deviation)")
     return figure
 
 
-def _field(
-    axes: Axes,
-    grid: Grid,
-    wanted: Float[np.ndarray, "runs rows columns"],
-    levels: Float[np.ndarray, "levels"],
-    colours: LinearSegmentedColormap = DISCHARGE_TO_CHARGE,
-) -> QuadContourSet:
+def _draw_map(
+    axes: Axes, grid: Grid, wanted: Runs, levels: Float[np.ndarray, "levels"], colours: Colormap
+) -> None:
     """The mean over the runs."""
-    mean = wanted.mean(axis=0)
-    return axes.contourf(grid.x, grid.y, mean, levels=levels, cmap=colours, extend="both")
+    axes.contourf(grid.x, grid.y, wanted.mean(axis=0), levels=levels, cmap=colours, extend="both")
 
 
-def _hatch(axes: Axes, grid: Grid, wanted: Float[np.ndarray, "runs rows columns"], spread: float) -> None:
+def _hatch(axes: Axes, grid: Grid, wanted: Runs, spread: float) -> None:
     deviation = wanted.std(axis=0)
     if deviation.max() > spread:
         axes.contourf(grid.x, grid.y, deviation, levels=[spread, np.inf], colors="none", hatches=[DISAGREE])
     axes.grid(visible=False)
+
+
+def _colour_bar(figure: FigureBase, panels: np.ndarray, label: str, aspect: float) -> None:
+    """The colours of the maps, which are the same in all panels."""
+    drawn = panels.flat[0].collections[0]
+    ticks = np.linspace(drawn.levels[0], drawn.levels[-1], TICKS)
+    figure.colorbar(drawn, ax=panels, label=label, aspect=aspect, ticks=ticks)
 
 
 def _pay(axes: Axes, one: ComfortMap) -> None:

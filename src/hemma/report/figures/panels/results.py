@@ -5,12 +5,9 @@ from matplotlib.figure import Figure
 from hemma.report.drawing.canvas import FULL_WIDTH, new_figure
 from hemma.report.drawing.rows import rows_height
 from hemma.report.figures.figure import HomeFigure, Words
-from hemma.report.figures.panels.battery_level import draw_battery_level
-from hemma.report.figures.panels.cost_by_demonstrations import draw_cost_by_length
-from hemma.report.figures.panels.deviation_by_demonstrations import draw_deviation_by_length
-from hemma.report.figures.panels.energy_cost import draw_costs
-from hemma.report.figures.panels.indoor_temperature import draw_indoor_temperature
-from hemma.report.figures.panels.temperature_deviation import draw_deviations
+from hemma.report.figures.panels.demonstrations import draw_cost_by_length, draw_deviation_by_length
+from hemma.report.figures.panels.methods import draw_costs, draw_deviations
+from hemma.report.figures.panels.week import draw_battery_level, draw_indoor_temperature
 from hemma.report.subject import HomeSubject
 
 
