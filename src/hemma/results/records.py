@@ -91,7 +91,7 @@ class Identification(Record):
     seconds: Number = None
 
 
-class Optimum(Record):
+class OptimumRecord(Record):
     """Perfect information with the least reachable deviation."""
 
     energy_cost: Number = None

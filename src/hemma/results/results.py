@@ -8,13 +8,13 @@ from pydantic import Field
 from hemma.errors import HemmaError
 from hemma.evaluation import RegretSplit
 from hemma.record import Band, Finite, Record
-from hemma.results.findings import Aggregate, Improvement, ParetoPoint
+from hemma.results.findings import Aggregate, ImprovementRecord, ParetoPoint
 from hemma.results.reading import read_record
 from hemma.results.records import (
     DemonstrationRuns,
     Identification,
     MethodRuns,
-    Optimum,
+    OptimumRecord,
     Period,
     Recommendation,
 )
@@ -35,7 +35,7 @@ class HomeResults(Record):
     comfort_c: Band
     """T^low and T^upp."""
     identification: Identification | None = None
-    optimum: Optimum | None = None
+    optimum: OptimumRecord | None = None
     recommendation: Recommendation | None = None
     demonstration_days: dict[str, Finite] = Field(default_factory=dict)
     """By method, of those that learn from demonstrations."""
@@ -45,7 +45,7 @@ class HomeResults(Record):
     regret: dict[str, RegretSplit] = Field(default_factory=dict)
     """By method."""
     pareto: tuple[ParetoPoint, ...] = ()
-    probability_of_improvement: tuple[Improvement, ...] = ()
+    probability_of_improvement: tuple[ImprovementRecord, ...] = ()
 
     @property
     def test_days(self) -> float:

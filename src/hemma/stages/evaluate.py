@@ -7,7 +7,7 @@ from functools import cached_property
 from hemma.evaluation import EqualComfort, Outcome, measure
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.results.fingerprint import code, fingerprint
-from hemma.results.records import Optimum, Run
+from hemma.results.records import OptimumRecord, Run
 from hemma.results.schedules import write_exogenous, write_schedule
 from hemma.results.store import Store
 from hemma.stages.case import Case
@@ -70,14 +70,14 @@ def at_equal_comfort(problem: OptimumProblem, deviation: float) -> EqualComfort:
     return EqualComfort(optimum.cost, no_battery.cost, max(optimum.gap, no_battery.gap))
 
 
-def plain_optimum(evaluator: Evaluator) -> Optimum:
+def plain_optimum(evaluator: Evaluator) -> OptimumRecord:
     """Perfect information with the least reachable deviation, and its proof."""
     mark = fingerprint("optimum", CODE, evaluator.case.mark)
     content = evaluator.store.kept("optimum", mark)
     if content is not None:
-        return Optimum.model_validate(content)
+        return OptimumRecord.model_validate(content)
     found = evaluator.problem.solve()
-    optimum = Optimum(
+    optimum = OptimumRecord(
         energy_cost=found.cost,
         mean_temperature_deviation=found.deviation / evaluator.case.test.slots,
         bound=found.bound,

@@ -12,7 +12,7 @@ from hemma.report.drawing.canvas import FULL_WIDTH, new_figure
 from hemma.report.figures.figure import HomeFigure, ReportFigure, Section, Words
 from hemma.report.methods import in_order
 from hemma.report.numbers import decimals
-from hemma.results.findings import Improvement
+from hemma.results.findings import ImprovementRecord
 from hemma.results.results import HomeResults, Results
 
 _COLOURS = LinearSegmentedColormap.from_list(
@@ -32,11 +32,11 @@ class Chances:
     """All pairs of methods."""
 
     methods: tuple[str, ...]
-    pairs: dict[tuple[str, str], Improvement]
+    pairs: dict[tuple[str, str], ImprovementRecord]
     """By (method, over); both directions of every pair that is known."""
 
 
-def comparison_of(improvements: Sequence[Improvement], methods: Iterable[str] | None = None) -> Chances:
+def comparison_of(improvements: Sequence[ImprovementRecord], methods: Iterable[str] | None = None) -> Chances:
     """The pairs among ``methods`` (all if None); a pair given one way only is turned around."""
     wanted = None if methods is None else set(methods)
     known = [
@@ -70,7 +70,7 @@ def improvement_figure(comparison: Chances) -> Figure:
     return figure
 
 
-def _draw_cell(axes: Axes, row: int, column: int, entry: Improvement) -> None:
+def _draw_cell(axes: Axes, row: int, column: int, entry: ImprovementRecord) -> None:
     """A rectangle and not a pixel of an image: the figure stays sharp and holds no foreign file."""
     chance = entry.probability if entry.probability is not None else 0.5
     axes.add_patch(
@@ -83,18 +83,18 @@ def _draw_cell(axes: Axes, row: int, column: int, entry: Improvement) -> None:
         axes.text(column, row + 0.25, said, ha="center", va="center", fontsize=6.2)
 
 
-def _colour(entry: Improvement) -> tuple[float, float, float, float]:
+def _colour(entry: ImprovementRecord) -> tuple[float, float, float, float]:
     """Of the probability; pale where its interval leaves open which of the two is better."""
     chance = 0.5 if entry.probability is None else entry.probability
     is_open = entry.interval is not None and entry.interval[0] <= 0.5 <= entry.interval[1]
     return _COLOURS(0.5 + (_PALE if is_open else 1.0) * (chance - 0.5))
 
 
-def _turned(entry: Improvement) -> Improvement:
+def _turned(entry: ImprovementRecord) -> ImprovementRecord:
     """The same pair seen from the other method: 1 - p."""
     chance = None if entry.probability is None else 1 - entry.probability
     interval = None if entry.interval is None else (1 - entry.interval[1], 1 - entry.interval[0])
-    return Improvement(method=entry.over, over=entry.method, probability=chance, interval=interval)
+    return ImprovementRecord(method=entry.over, over=entry.method, probability=chance, interval=interval)
 
 
 def _of_home(home: HomeResults) -> Chances | None:
