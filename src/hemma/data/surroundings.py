@@ -98,6 +98,4 @@ def _nearest_place(table: CsvTable, latitude: float | None) -> CsvTable:
     nearest = places[0] if latitude is None else places[np.argmin(np.abs(places - latitude))]
     stamps = table.cells("localhour")
     rows = sorted(np.flatnonzero(latitudes == nearest).tolist(), key=stamps.__getitem__)
-    return CsvTable(
-        table.path, table.header, [table.rows[row] for row in rows], [table.lines[row] for row in rows]
-    )
+    return replace(table, rows=[table.rows[row] for row in rows], lines=[table.lines[row] for row in rows])

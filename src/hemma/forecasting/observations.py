@@ -48,31 +48,29 @@ class ObservationModel:
 
 
 PAPER = ObservationModel("paper")
-MODELS = {
-    model.name: model
-    for model in (
-        PAPER,
-        ObservationModel("past", "the last 24 hours and the day of the week", past=True),
-        ObservationModel(
-            "published", "the prices of the coming hours as far as they are published", published=True
-        ),
-        ObservationModel(
-            "forecast", "a forecast of the coming hours, and how well it did of late", forecast=True
-        ),
-        ObservationModel(
-            "past and forecast",
-            "the last 24 hours, the day of the week and a forecast of the coming hours",
-            past=True,
-            forecast=True,
-        ),
-        ObservationModel(
-            "published and forecast",
-            "published prices and a forecast of what is not published",
-            published=True,
-            forecast=True,
-        ),
-    )
-}
+_ALL = (
+    PAPER,
+    ObservationModel("past", "the last 24 hours and the day of the week", past=True),
+    ObservationModel(
+        "published", "the prices of the coming hours as far as they are published", published=True
+    ),
+    ObservationModel(
+        "forecast", "a forecast of the coming hours, and how well it did of late", forecast=True
+    ),
+    ObservationModel(
+        "past and forecast",
+        "the last 24 hours, the day of the week and a forecast of the coming hours",
+        past=True,
+        forecast=True,
+    ),
+    ObservationModel(
+        "published and forecast",
+        "published prices and a forecast of what is not published",
+        published=True,
+        forecast=True,
+    ),
+)
+MODELS = {model.name: model for model in _ALL}
 """All that there are, by name."""
 
 
