@@ -107,7 +107,7 @@ def test_summer_and_winter_of_two_years_are_read(write):
     times = stamps(24 * 330 // 6, timedelta(hours=6), "2021-03-20T00:00:00")
     summer = [("2021-03-28" <= t[:10] < "2021-10-31") or t[:10] >= "2022-03-27" for t in times]
     read = read_canonical(write(rows(shifted(times, [1 + dst for dst in summer]))))
-    assert sorted(set(read.offsets().tolist())) == [1.0, 2.0]
+    assert sorted(set(read.clock.offset.tolist())) == [1.0, 2.0]
 
 
 @pytest.mark.parametrize("stamp", ["0001-01-01T00:00:00+14:00", "9999-12-31T23:00:00-06:00", "x" * 9000])

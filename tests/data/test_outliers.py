@@ -14,6 +14,7 @@ from hypothesis.extra.numpy import arrays
 
 from hemma.data import load_austin2021, read_canonical, write_canonical
 from hemma.data.clock import Clock
+from hemma.data.columns import Columns
 from hemma.data.outliers import stuck_cells, unusual_cells
 from hemma.data.plausibility import require_plausible
 from hemma.errors import HemmaError
@@ -57,7 +58,7 @@ def series(column, changes=()):
 
 def problem(column, values):
     with pytest.raises(HemmaError) as caught:
-        require_plausible("home.csv", CLOCK, [column], [values])
+        require_plausible("home.csv", Columns(CLOCK, {column: values}))
     return str(caught.value)
 
 
@@ -151,7 +152,7 @@ def test_temperatures_that_do_not_occur(value):
 )
 def test_milder_spikes_are_told(column, value, told):
     values = series(column, [(AT, value)])
-    require_plausible("home.csv", CLOCK, [column], [values])
+    require_plausible("home.csv", Columns(CLOCK, {column: values}))
     [note] = unusual_cells(column, CLOCK, values)
     assert note.startswith(f"one slot of {column} stands out, {told}")
 
@@ -253,7 +254,7 @@ def test_loads_of_real_homes_are_not_refused(seed, peak, scale):
     draw = np.random.default_rng(seed)
     load = scale * draw.gamma(2.0, 0.2, 480)
     load[draw.integers(0, 480, 10)] = peak
-    require_plausible("home.csv", CLOCK, ["load_kw"], [load])
+    require_plausible("home.csv", Columns(CLOCK, {"load_kw": load}))
 
 
 @settings(max_examples=30)
@@ -262,4 +263,4 @@ def test_no_numbers_break_the_checks(values, column):
     """Any floats, NaN and infinities too: refused or not, without an overflow."""
     values = np.where(np.isinf(values), np.nan, values)
     with suppress(HemmaError):
-        require_plausible("home.csv", CLOCK, [column], [values])
+        require_plausible("home.csv", Columns(CLOCK, {column: values}))

@@ -101,4 +101,4 @@ def test_prices_keep_their_mean_whatever_the_two_clocks(tmp_path_factory, coarse
     clock = Clock(start, slot * 60, np.zeros(8))
     minutes = shift * 5 + np.arange(8 * slot)
     by_hand = prices[minutes // coarse].reshape(8, slot).mean(axis=1)
-    np.testing.assert_allclose(price(path, "buy_per_kwh", clock).values, by_hand, atol=1e-12)
+    np.testing.assert_allclose(price(path, "buy_per_kwh", clock).series["buy_per_kwh"], by_hand, atol=1e-12)

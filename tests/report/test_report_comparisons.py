@@ -18,7 +18,7 @@ from hemma.report.figures.regret import regret_figure
 from hemma.report.figures.share_of_savings import homes_figure
 from hemma.report.tables.aggregate import differences_of, worst_over_homes
 from hemma.report.tables.cells import Cell
-from hemma.results.findings import Improvement, PairedDifference, ParetoPoint
+from hemma.results.findings import ImprovementRecord, PairedDifference, ParetoPoint
 from hemma.results.results import HomeResults, Results, load_results
 
 REGRET_BARS = 3
@@ -101,7 +101,7 @@ def test_a_swept_weight_is_a_letter_with_a_subscript_and_a_name_is_never_a_formu
 
 def test_an_open_pair_is_pale_and_a_decided_one_is_not():
     decided, unsure = (
-        Improvement(method="HA-1", over=over, probability=1.0, interval=interval)
+        ImprovementRecord(method="HA-1", over=over, probability=1.0, interval=interval)
         for over, interval in (("PPO", (0.6, 1.0)), ("BC", (0.4, 1.0)))
     )
     axes = improvement_figure(comparison_of([decided, unsure], {"HA-1", "PPO", "BC"})).axes[0]
@@ -141,7 +141,9 @@ def test_a_regret_that_was_not_split_is_drawn_whole(home):
 
 
 def test_a_pair_given_one_way_is_turned_around():
-    comparison = comparison_of([Improvement(method="PPO", over="HA-1", probability=0.2, interval=(0.1, 0.4))])
+    comparison = comparison_of(
+        [ImprovementRecord(method="PPO", over="HA-1", probability=0.2, interval=(0.1, 0.4))]
+    )
     turned = comparison.pairs["HA-1", "PPO"]
     assert comparison.methods == ("HA-1", "PPO")
     assert turned.probability == pytest.approx(0.8)
@@ -149,13 +151,13 @@ def test_a_pair_given_one_way_is_turned_around():
 
 
 def test_only_the_methods_asked_for_are_compared():
-    pairs = [Improvement(method="HA-1", over=other, probability=0.9) for other in ("PPO", "Rule")]
+    pairs = [ImprovementRecord(method="HA-1", over=other, probability=0.9) for other in ("PPO", "Rule")]
     assert comparison_of(pairs, ["HA-1", "PPO"]).methods == ("HA-1", "PPO")
     assert comparison_of(pairs, ["PPO", "Rule"]).methods == ()
 
 
 def test_the_table_of_probabilities_reads_row_over_column():
-    comparison = comparison_of([Improvement(method="HA-1", over="PPO", probability=0.93)])
+    comparison = comparison_of([ImprovementRecord(method="HA-1", over="PPO", probability=0.93)])
     axes = improvement_figure(comparison).axes[0]
     told = {text.get_position(): text.get_text() for text in axes.texts}
     assert told == {(1, 0): "0.93", (0, 1): "0.07"}

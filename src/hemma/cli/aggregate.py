@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from hemma.cli.console import ruled
+from hemma.cli.console import in_cell, ruled
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -22,5 +22,5 @@ def print_aggregate(console: "Console", results: "Results") -> None:
     table = ruled(f"All {len(results.aggregate.homes)} homes: means over homes and seeds", headings)
     table.caption = INTERVALS
     for method in in_order(rows):
-        table.add_row(method, *(f"{cell.value}\n{cell.detail}".strip() for cell in rows[method].values()))
+        table.add_row(method, *map(in_cell, rows[method].values()))
     console.print(table)

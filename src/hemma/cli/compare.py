@@ -1,12 +1,13 @@
 """``hemma compare``: several results folders side by side."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hemma.cli.console import print_json, results_console, ruled, say, tell
-from hemma.cli.files import Force, named, require_new
+from hemma.cli.console import grouped, in_cell, print_json, results_console, ruled, say, tell
+from hemma.cli.files import Force, path_argument, path_option, require_new
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -15,23 +16,10 @@ if TYPE_CHECKING:
     from hemma.report.comparison.records import FolderComparison
 
 Folders = Annotated[
-    list[Path],
-    typer.Argument(
-        parser=named,
-        metavar="RESULTS...",
-        help="Results folders; the others are compared with the first.",
-    ),
+    list[Path], path_argument("RESULTS...", "Results folders; the others are compared with the first.")
 ]
-File = Annotated[
-    Path | None,
-    typer.Option("--out", parser=named, metavar="FILE", help="Write it to a file too: .html, .csv or .json."),
-]
+File = Annotated[Path | None, path_option("--out", "FILE", "Write it to a file too: .html, .csv or .json.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(compare)
 
 
 def compare(folders: Folders, out: File = None, force: Force = False, json: Json = False) -> None:
@@ -53,17 +41,24 @@ def compare(folders: Folders, out: File = None, force: Force = False, json: Json
 
 
 def _print_comparison(comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.page import READING, legend
+    from hemma.report.comparison import page
 
     console = results_console()
-    for line in legend(comparison):
+    for line in page.legend(comparison):
         console.print(line)
     _print_disagreements(console, comparison)
-    for note in comparison.notes:
+    _print_notes(console, comparison.notes)
+    for name, home in comparison.homes.items():
+        _print_rows(console, name, page.home_rows(comparison.folders, home))
+        _print_notes(console, home.notes)
+    if comparison.over_homes:
+        _print_rows(console, page.OVER_HOMES, page.over_homes_rows(comparison))
+    console.print(page.READING)
+
+
+def _print_notes(console: "Console", notes: Iterable[str]) -> None:
+    for note in notes:
         console.print(f"Note: {note}")
-    _print_methods(console, comparison)
-    _print_over_homes(console, comparison)
-    console.print(READING)
 
 
 def _print_disagreements(console: "Console", comparison: "FolderComparison") -> None:
@@ -80,31 +75,8 @@ def _print_disagreements(console: "Console", comparison: "FolderComparison") -> 
     console.print(table)
 
 
-def _print_methods(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.page import home_rows
-
-    for name, home in comparison.homes.items():
-        _print_rows(console, name, home_rows(comparison.folders, home))
-        for note in home.notes:
-            console.print(f"Note: {note}")
-
-
-def _print_over_homes(console: "Console", comparison: "FolderComparison") -> None:
-    from hemma.report.comparison.page import OVER_HOMES, over_homes_rows
-
-    if comparison.over_homes:
-        _print_rows(console, OVER_HOMES, over_homes_rows(comparison))
-
-
 def _print_rows(console: "Console", title: str, rows: "list[ComparisonRow]") -> None:
     from hemma.report.comparison.page import headings_of
 
-    table = ruled(title, headings_of(rows), left=2)
-    last = ""
-    for row in rows:
-        if last and row.method != last:
-            table.add_section()
-        texts = [f"{cell.value}\n{cell.detail}".strip() for cell in row.cells.values()]
-        table.add_row("" if row.method == last else row.method, row.folder, *texts)
-        last = row.method
-    console.print(table)
+    texts = [(row.method, row.folder, *map(in_cell, row.cells.values())) for row in rows]
+    console.print(grouped(ruled(title, headings_of(rows), left=2), texts))

@@ -1,19 +1,23 @@
 """What people see: progress and messages on standard error, results on standard output."""
 
 import json
+import shlex
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
+from hemma.cli.compilation import keep_compiled_code
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
+    from hemma.report.tables.cells import Cell
     from hemma.results.progress import Progress
 
 INTERRUPTED = 130
@@ -53,6 +57,22 @@ def ruled(title: str, headings: Sequence[str], left: int = 1) -> "Table":
     return table
 
 
+def grouped(table: "Table", rows: Iterable[Sequence[str]]) -> "Table":
+    """``table`` with ``rows``; those that follow each other with the same first cell are one group."""
+    last = ""
+    for first, *others in rows:
+        if last and first != last:
+            table.add_section()
+        table.add_row("" if first == last else first, *others)
+        last = first
+    return table
+
+
+def in_cell(cell: "Cell") -> str:
+    """Value and detail of a report's cell, one below the other."""
+    return f"{cell.value}\n{cell.detail}".strip()
+
+
 @contextmanager
 def going_on_later() -> Iterator[None]:
     """Ctrl-C inside ends the program with a word on how to go on."""
@@ -63,9 +83,18 @@ def going_on_later() -> Iterator[None]:
         raise typer.Exit(INTERRUPTED) from interrupt
 
 
+def typed() -> str:
+    """The command as it was typed."""
+    return shlex.join(["hemma", *sys.argv[1:]])
+
+
 @contextmanager
 def show_progress() -> "Iterator[Progress]":
-    """Bars on a terminal, plain lines anywhere else; what a library prints meanwhile is no result."""
+    """Bars on a terminal, plain lines anywhere else; what a library prints meanwhile is no result.
+
+    Work begins here, so compiled code is kept from here on.
+    """
+    keep_compiled_code()
     if not sys.stderr.isatty():
         with redirect_stdout(sys.stderr):
             yield PlainLines()
@@ -161,6 +190,6 @@ def print_table(folder: Path) -> None:
         for row in rows:
             if row.home == home:
                 cells = [row.measures[heading] for heading in COLUMNS]
-                table.add_row(row.method, *(f"{cell.value}\n{cell.detail}".strip() for cell in cells))
+                table.add_row(row.method, *map(in_cell, cells))
         console.print(table)
     print_aggregate(console, results)

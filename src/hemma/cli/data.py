@@ -1,13 +1,12 @@
 """``hemma data``: look at traces, and bring them into the canonical form."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hemma.cli.console import say
-from hemma.cli.files import Force, named, require_new
+from hemma.cli.files import Force, path_argument, path_option, require_new
 
 if TYPE_CHECKING:
     from hemma.data import TimeOfUse
@@ -15,18 +14,8 @@ if TYPE_CHECKING:
 app = typer.Typer(help="Look at traces and bring them into the canonical form.", no_args_is_help=True)
 
 ENDINGS = (".csv", ".csv.gz")
-Canonical = Annotated[
-    Path,
-    typer.Argument(
-        parser=named, metavar="FILE", help="Canonical trace file, .csv or .csv.gz.", show_default=False
-    ),
-]
-Dataport = Annotated[
-    Path,
-    typer.Argument(
-        parser=named, metavar="SOURCE", help="Pecan Street Dataport file, .csv, .csv.gz or .tar.gz."
-    ),
-]
+Canonical = Annotated[Path, path_argument("FILE", "Canonical trace file, .csv or .csv.gz.", False)]
+Dataport = Annotated[Path, path_argument("SOURCE", "Pecan Street Dataport file, .csv, .csv.gz or .tar.gz.")]
 
 
 @app.command()
@@ -56,9 +45,7 @@ def export(
 @app.command()
 def list_pecan_street(
     source: Dataport,
-    metadata: Annotated[
-        Path | None, typer.Option("--metadata", parser=named, metavar="FILE", help="Dataport's metadata.csv.")
-    ] = None,
+    metadata: Annotated[Path | None, path_option("--metadata", "FILE", "Dataport's metadata.csv.")] = None,
 ) -> None:
     """Say which homes a Pecan Street Dataport file holds and what is instrumented in them."""
     from hemma.data import list_pecan_street_homes
@@ -68,26 +55,18 @@ def list_pecan_street(
         say(f"{home.home}: {home.first} to {home.last}, {', '.join(home.circuits)}{place}")
 
 
-@dataclass(frozen=True)
-class _Prices:
+def _prices(
+    file: Path | None, off_peak: float | None, peak: float | None, hours: tuple[float, float]
+) -> "Path | TimeOfUse":
     """Where the prices of a Pecan Street home come from: a file, or a time-of-use tariff."""
+    from hemma.data import TimeOfUse
+    from hemma.errors import HemmaError
 
-    file: Path | None
-    off_peak: float | None
-    peak: float | None
-    hours: tuple[float, float]
-
-    @property
-    def source(self) -> "Path | TimeOfUse":
-        from hemma.data import TimeOfUse
-        from hemma.errors import HemmaError
-
-        tariff = (self.off_peak, self.peak)
-        if self.file is not None and tariff == (None, None):
-            return self.file
-        if self.file is not None or self.off_peak is None or self.peak is None:
-            raise HemmaError("expected prices: either --prices FILE, or both --off-peak and --peak")
-        return TimeOfUse(self.off_peak, self.peak, *self.hours)
+    if file is not None and off_peak is None and peak is None:
+        return file
+    if file is not None or off_peak is None or peak is None:
+        raise HemmaError("expected prices: either --prices FILE, or both --off-peak and --peak")
+    return TimeOfUse(off_peak, peak, *hours)
 
 
 @app.command()
@@ -96,19 +75,10 @@ def convert_pecan_street(  # noqa: PLR0913 - a command line has as many options 
     file: Canonical,
     home: Annotated[int, typer.Option("--home", help="dataid of the home.")],
     weather: Annotated[
-        Path,
-        typer.Option(
-            "--weather",
-            parser=named,
-            metavar="FILE",
-            help="CSV file time,outdoor_c, or Dataport's weather table.",
-        ),
+        Path, path_option("--weather", "FILE", "CSV file time,outdoor_c, or Dataport's weather table.")
     ],
     prices: Annotated[
-        Path | None,
-        typer.Option(
-            "--prices", parser=named, metavar="FILE", help="CSV file time,buy_per_kwh[,sell_per_kwh]."
-        ),
+        Path | None, path_option("--prices", "FILE", "CSV file time,buy_per_kwh[,sell_per_kwh].")
     ] = None,
     off_peak: Annotated[
         float | None, typer.Option("--off-peak", help="Instead of --prices: price per kWh out of the peak.")
@@ -143,7 +113,7 @@ def convert_pecan_street(  # noqa: PLR0913 - a command line has as many options 
         exclude_cars=exclude_cars,
         exclude_battery=exclude_battery,
     )
-    tariff = _Prices(prices, off_peak, peak, peak_hours).source
+    tariff = _prices(prices, off_peak, peak, peak_hours)
     traces = read_pecan_street(source, home, weather=weather, prices=tariff, options=options)
     write_canonical(traces, file)
     for line in report_quality(traces):

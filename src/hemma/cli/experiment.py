@@ -1,16 +1,13 @@
 """``hemma reproduce``, its stages one by one, ``hemma report`` and ``hemma settings``."""
 
-import shlex
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hemma.cli.compilation import keep_compiled_code
-from hemma.cli.console import going_on_later, print_json, print_table, say, show_progress, show_results
-from hemma.cli.files import named
+from hemma.cli.console import going_on_later, print_json, print_table, say, show_progress, show_results, typed
+from hemma.cli.files import path_argument, path_option
 from hemma.cli.homes import chosen_homes
 
 if TYPE_CHECKING:
@@ -19,13 +16,7 @@ if TYPE_CHECKING:
 
 Traces = Annotated[
     Path | None,
-    typer.Option(
-        "--traces",
-        parser=named,
-        metavar="FILE",
-        help="Canonical trace file of your own home.",
-        show_default="an embedded home",
-    ),
+    path_option("--traces", "FILE", "Canonical trace file of your own home.", "an embedded home"),
 ]
 Home = Annotated[
     list[int] | None,
@@ -42,15 +33,9 @@ TestFrom = Annotated[
     ),
 ]
 Settings = Annotated[
-    Path | None,
-    typer.Option(
-        "--settings",
-        parser=named,
-        metavar="FILE.yaml",
-        help="Settings; `hemma settings` prints the defaults.",
-    ),
+    Path | None, path_option("--settings", "FILE.yaml", "Settings; `hemma settings` prints the defaults.")
 ]
-Out = Annotated[Path, typer.Option("--out", parser=named, metavar="DIR", help="Results folder.")]
+Out = Annotated[Path, path_option("--out", "DIR", "Results folder.")]
 Seeds = Annotated[
     int | None,
     typer.Option("--seeds", help="Runs of each learned method instead of the number in the settings."),
@@ -62,9 +47,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print results.json instead o
 Week = Annotated[
     int, typer.Option("--week", help="Which week of the test period the time plots show, from 1.")
 ]
-Folder = Annotated[
-    Path, typer.Argument(parser=named, metavar="FOLDER", help="Results folder of an earlier run.")
-]
+Folder = Annotated[Path, path_argument("FOLDER", "Results folder of an earlier run.")]
 
 OUT = Path("results")
 
@@ -147,7 +130,6 @@ def _run(verb: str, request: Request) -> Any:
 
         last = Stage.REPORT if verb == "reproduce" else Stage[verb.upper()]
         job = job_of(request)
-        keep_compiled_code()
         with show_progress() as progress:
             return run(job, last, progress)
 
@@ -165,8 +147,7 @@ def job_of(request: Request) -> "Job":
         homes = embedded_homes(experiment, request.homes or (1,))
     else:
         homes = own_home(experiment, request.traces)
-    command = shlex.join(["hemma", *sys.argv[1:]])
-    return Job(experiment, homes, request.folder, request.test_from, command)
+    return Job(experiment, homes, request.folder, request.test_from, typed())
 
 
 def chosen_experiment(file: Path | None, seeds: int | None, is_quick: bool) -> "Experiment":

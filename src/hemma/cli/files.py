@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -16,6 +16,16 @@ def named(text: str | Path) -> Path:
     if not str(text).strip():
         raise typer.BadParameter("expected a name, got nothing. Correct it, or leave the option out")
     return Path(text)
+
+
+def path_option(name: str, metavar: str, text: str, default: bool | str = True) -> Any:
+    """An option ``name`` that takes a path; ``default`` is what its help says of the default, if anything."""
+    return typer.Option(name, parser=named, metavar=metavar, help=text, show_default=default)
+
+
+def path_argument(metavar: str, text: str, default: bool | str = True) -> Any:
+    """An argument that is a path; ``default`` as in ``path_option``."""
+    return typer.Argument(parser=named, metavar=metavar, help=text, show_default=default)
 
 
 def require_new(file: Path, force: bool, endings: Sequence[str]) -> None:

@@ -33,9 +33,8 @@ app = typer.Typer(
 )
 app.add_typer(data.app, name="data")
 experiment.register(app)
-compare.register(app)
-robustness.register(app)
-transfer.register(app)
+for command in (compare.compare, robustness.robustness, transfer.transfer):
+    app.command()(command)
 
 
 def run() -> None:

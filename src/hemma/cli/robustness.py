@@ -1,14 +1,11 @@
 """``hemma robustness``: what is left of each method when things go wrong."""
 
-import shlex
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from hemma.cli.compilation import keep_compiled_code
-from hemma.cli.console import going_on_later, print_json, results_console, ruled, say, show_progress
+from hemma.cli.console import going_on_later, print_json, results_console, ruled, say, show_progress, typed
 from hemma.cli.experiment import (
     OUT,
     Home,
@@ -23,26 +20,20 @@ from hemma.cli.experiment import (
     Traces,
     job_of,
 )
-from hemma.cli.files import named
+from hemma.cli.files import path_argument
 from hemma.cli.homes import chosen_homes
 
 Every = Annotated[bool, typer.Option("--every", help="Every method in the table that is printed.")]
 Filled = Annotated[
     Path | None,
-    typer.Argument(
-        parser=named,
-        metavar="[RESULTS]",
-        help="A results folder: measure what it holds, with its own settings and homes, and train nothing.",
-        show_default=False,
+    path_argument(
+        "[RESULTS]",
+        "A results folder: measure what it holds, with its own settings and homes, and train nothing.",
+        False,
     ),
 ]
 PRINTED = ("HA-1", "PPO", "default", "MPC forecast", "thresholds", "Rule")
 """What a terminal has room for; the file has all."""
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(robustness)
 
 
 def robustness(  # noqa: PLR0913
@@ -75,7 +66,6 @@ def _trained(request: Request) -> Any:
     from hemma.studies.robustness.run import run_faults
 
     job = job_of(request)
-    keep_compiled_code()
     with show_progress() as progress:
         return run_faults(job, progress)
 
@@ -90,9 +80,8 @@ def _as_it_is(folder: Path, request: Request) -> Any:
             f"expected a results folder or options, got {folder} and options; a folder brings its own homes, "
             "settings and seeds: leave out all but --traces, or name the folder with --out to train in it"
         )
-    keep_compiled_code()
     with show_progress() as progress:
-        return run_stored_faults(folder, request.traces, shlex.join(["hemma", *sys.argv[1:]]), progress)
+        return run_stored_faults(folder, request.traces, typed(), progress)
 
 
 def _print_table(folder: Path, every: bool) -> None:

@@ -1,31 +1,30 @@
 """``hemma transfer``: is the learned reward worth anything in a changed home?"""
 
-import shlex
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hemma.cli.compilation import keep_compiled_code
-from hemma.cli.console import going_on_later, print_json, results_console, ruled, say, show_progress
+from hemma.cli.console import (
+    going_on_later,
+    grouped,
+    print_json,
+    results_console,
+    ruled,
+    say,
+    show_progress,
+    typed,
+)
 from hemma.cli.experiment import Quick, Seeds, Settings, chosen_experiment
-from hemma.cli.files import named
+from hemma.cli.files import path_option
 
 if TYPE_CHECKING:
     from hemma.studies.transfer.run import TransferJob
 
 Home = Annotated[int, typer.Option("--home", help="Embedded home, 1 to 6.")]
-Out = Annotated[
-    Path, typer.Option("--out", parser=named, metavar="DIR", help="Folder of the test's results.")
-]
+Out = Annotated[Path, path_option("--out", "DIR", "Folder of the test's results.")]
 Json = Annotated[bool, typer.Option("--json", help="Print transfer.json instead of a table.")]
 OUT = Path("transfer")
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to ``app``."""
-    app.command()(transfer)
 
 
 def transfer(
@@ -41,7 +40,6 @@ def transfer(
         from hemma.studies.transfer.run import transfer as run
 
         job = _job(home, chosen_experiment(settings, seeds, quick), out)
-        keep_compiled_code()
         with show_progress() as progress:
             content = run(job, progress)
     if json:
@@ -55,7 +53,7 @@ def _job(home: int, experiment, folder: Path) -> "TransferJob":
     from hemma.studies.transfer.run import TransferJob
 
     [traces] = embedded_homes(experiment, (home,))
-    return TransferJob(experiment, traces, folder, command=shlex.join(["hemma", *sys.argv[1:]]))
+    return TransferJob(experiment, traces, folder, command=typed())
 
 
 def _print_tables(folder: Path) -> None:
@@ -65,13 +63,7 @@ def _print_tables(folder: Path) -> None:
     found = load_transfer(folder)
     console = results_console()
     table = ruled(f"{found.home}: mean of the runs, and its 95 % interval", HEADINGS, left=2)
-    last = ""
-    for row in transfer_rows(found):
-        if last and row[0] != last:
-            table.add_section()
-        table.add_row("" if row[0] == last else row[0], *row[1:])
-        last = row[0]
-    console.print(table)
+    console.print(grouped(table, transfer_rows(found)))
     for line in paired_lines(found):
         console.print(line)
     say(f"Results: {folder / TRANSFER_FILE}")

@@ -8,14 +8,12 @@ from jaxtyping import Float
 
 from hemma.checkpoint import write_atomically
 from hemma.data.clock import regular_clock
+from hemma.data.columns import OPTIONAL, REQUIRED, Columns
 from hemma.data.csv_table import CsvTable, parse_table
 from hemma.data.source_file import read_source, stem
 from hemma.data.traces import Traces
-from hemma.data.validation import Columns, Log, Repairs, validated
+from hemma.data.validation import Log, Repairs, validated
 from hemma.errors import HemmaError
-
-REQUIRED = ("time", "pv_kw", "load_kw", "outdoor_c", "buy_per_kwh")
-OPTIONAL = ("sell_per_kwh", "indoor_c", "hvac_kw")
 
 
 def read_canonical(
@@ -29,14 +27,13 @@ def read_canonical(
     with file, line, column, time and cure.
     """
     file = read_source(Path(path))
-    table = parse_table(file, REQUIRED, OPTIONAL)
+    table = parse_table(file, ("time", *REQUIRED), OPTIONAL)
     placement = regular_clock(table.stamps("time"), str(path))
-    columns = {column: placement.placed(_known(table, column)) for column in table.header if column != "time"}
+    series = {column: placement.placed(_known(table, column)) for column in table.header if column != "time"}
     log = Log(
         name=name or stem(file.path),
         file=str(path),
-        clock=placement.clock,
-        columns=Columns(**columns),
+        columns=Columns(placement.clock, series),
         sha256=file.sha256,
         source=f"Traces of the file {file.path.name}, as its owner recorded them.",
     )

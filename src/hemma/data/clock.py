@@ -3,15 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta, timezone
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from hemma.errors import HemmaError
-
-if TYPE_CHECKING:
-    import pandas
 
 MOST_SLOTS_PER_ROW = 10
 """A file whose span has more slots than this per row has a wrong time stamp rather than holes."""
@@ -24,6 +20,8 @@ LARGEST_CHANGE = 2.0
 SHORTEST_SEASON = 14 * 86400
 """Nobody changes the wall clock again before this [s]; the month of Ramadan is the shortest season."""
 DAY = 86400
+THURSDAY = 3
+"""Day of the week of 1 January 1970, Monday being 0."""
 
 
 @dataclass(frozen=True)
@@ -68,29 +66,27 @@ class Clock:
         """Start of each slot [s since 1970-01-01T00:00:00Z]."""
         return self.start + self.step * np.arange(self.slots, dtype=np.int64)
 
+    @property
+    def wall(self) -> Int[np.ndarray, "slots"]:
+        """Wall clock at the start of each slot [s since its 1970-01-01T00:00:00]."""
+        return wall_clock(self.seconds, self.offset)
+
     def hour_of_day(self) -> Float[np.ndarray, "slots"]:
         """Local wall clock hour at the start of each slot, in [0, 24)."""
-        wall = self.seconds + np.round(self.offset * 3600).astype(np.int64)
-        return (wall % DAY) / 3600
+        return (self.wall % DAY) / 3600
+
+    def weekdays(self) -> Int[np.ndarray, "slots"]:
+        """Day of the week of each slot by the wall clock, Monday 0."""
+        return (self.wall // DAY + THURSDAY) % 7
+
+    def stamps(self) -> list[str]:
+        """Start of each slot, ISO 8601 with the offset: ``2021-08-01T00:00:00-06:00``."""
+        return [iso_text(*slot) for slot in zip(self.seconds.tolist(), self.offset.tolist(), strict=True)]
 
     def text(self, slot: int) -> str:
         """Start of a slot, ISO 8601 with the offset; the slot after the last is the end."""
         offset = float(self.offset[min(slot, self.slots - 1)])
         return iso_text(self.start + slot * self.step, offset)
-
-    def index(self) -> "pandas.DatetimeIndex":
-        """The slots as pandas knows them: in their offset if there is one, in UTC if it changes."""
-        import pandas as pd
-
-        first = datetime.fromtimestamp(self.start, UTC)
-        index = pd.date_range(first, periods=self.slots, freq=pd.Timedelta(seconds=self.step))
-        if self.changes_offset():
-            return index
-        return index.tz_convert(timezone(timedelta(hours=float(self.offset[0]))))
-
-    def changes_offset(self) -> bool:
-        """Whether the wall clock is changed on the way."""
-        return bool((self.offset != self.offset[0]).any())
 
     def window(self, start: int, stop: int) -> "Clock":
         """The slots from ``start`` (included) to ``stop`` (excluded)."""
@@ -204,6 +200,13 @@ def _check_one_length(stamps: Stamps, steps: Int[np.ndarray, "steps"], step: int
             f"{stamps.text(row)} follows {stamps.text(row - 1)} ({int(irregular.sum())} such rows). "
             "Bring the rows to a regular clock"
         )
+
+
+def wall_clock(
+    seconds: Int[np.ndarray, "rows"], offset: Float[np.ndarray, "rows"]
+) -> Int[np.ndarray, "rows"]:
+    """Moments [s since 1970-01-01T00:00:00Z] on wall clocks ``offset`` [h] ahead of UTC."""
+    return seconds + np.round(offset * 3600).astype(np.int64)
 
 
 def iso_text(seconds: int, offset: float) -> str:

@@ -3,19 +3,21 @@
 import gzip
 import hashlib
 from dataclasses import replace
+from datetime import datetime
 from importlib.resources import files
 
 import numpy as np
 from jaxtyping import Float
 
 from hemma.data.canonical import canonical_text
+from hemma.data.clock import Clock
 from hemma.data.tariff import Tariff, require_at_least_zero
-from hemma.data.traces import Traces, hours_of_day
+from hemma.data.traces import Traces
 from hemma.errors import HemmaError
 from hemma.types import Exogenous
 
 AUSTIN2021_HOMES = (1, 2, 3, 4, 5, 6)
-START = "2021-06-01T00:00:00-06:00"
+START = datetime.fromisoformat("2021-06-01T00:00:00-06:00")
 SLOTS = 2208
 SOURCE = (
     "Modelled home {home} (NREL End-Use Load Profiles, by way of CityLearn) on measured Austin weather, "
@@ -36,14 +38,12 @@ def load_austin2021(home: int, tariff: Tariff = PAPER_TARIFF, pv_scale: float = 
     ``pv_scale`` multiplies the PV generation (the homes' own PV is small, 1.2 to 2.8 kW peak). Standard time
     throughout, no daylight saving. Errors: HemmaError for a home that is not there and for bad parameters.
     """
-    import pandas as pd
-
     if home not in AUSTIN2021_HOMES:
         raise HemmaError(
             f"austin2021: expected one of the homes {', '.join(map(str, AUSTIN2021_HOMES))}, got {home}"
         )
     require_at_least_zero("austin2021: pv_scale", pv_scale)
-    time = pd.date_range(START, periods=SLOTS, freq="h")
+    clock = Clock(round(START.timestamp()), 3600, np.full(SLOTS, -6.0))
     outdoor_temperature, wholesale = _columns("weather_and_prices.csv.gz")
     pv_generation, load, indoor_temperature, hvac_power = _columns(f"home{home}.csv.gz")
     exogenous = Exogenous(
@@ -52,11 +52,11 @@ def load_austin2021(home: int, tariff: Tariff = PAPER_TARIFF, pv_scale: float = 
         outdoor_temperature=outdoor_temperature,
         buying_price=tariff.buying_price(wholesale),
         selling_price=tariff.selling_price(wholesale),
-        hour_of_day=hours_of_day(time.tz_localize(None)),
+        hour_of_day=clock.hour_of_day(),
     )
     traces = Traces(
         name=f"austin2021-{home}",
-        time=time,
+        clock=clock,
         exogenous=exogenous,
         indoor_temperature=indoor_temperature,
         hvac_power=hvac_power,

@@ -3,13 +3,14 @@
 What flows (power, temperature) is interpolated; what holds (a price) keeps the value before.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Int
 
 from hemma.data.clock import Clock
+from hemma.data.columns import Columns, Series
 from hemma.errors import HemmaError
 
 HOLDS = "_per_kwh"
@@ -34,29 +35,16 @@ class Hole:
         return duration((self.stop - self.start) * clock.slot_length)
 
 
-@dataclass(frozen=True)
-class Filled:
-    """Series without holes, and what was done to them."""
-
-    columns: Sequence[Float[np.ndarray, "slots"]]
-    notes: tuple[str, ...]
-
-
-def fill_gaps(
-    name: str,
-    clock: Clock,
-    names: Sequence[str],
-    columns: Sequence[Float[np.ndarray, "slots"]],
-    longest: float,
-) -> Filled:
+def fill_gaps(name: str, columns: Columns, longest: float) -> Columns:
     """Fill holes (NaN) of at most ``longest`` [h] that have values on both sides.
 
     Prices hold the value before them, everything else is interpolated linearly. Prices that come regularly
     once in several slots hold until the next, whatever ``longest``. Other holes raise a HemmaError that names
     each of them and the longest stretch without one.
     """
-    columns, notes = _spread(clock, names, columns)
-    holes = _holes(names, columns)
+    clock = columns.clock
+    series, notes = _spread(columns)
+    holes = _holes(series)
     refused = [
         hole
         for hole in holes
@@ -65,29 +53,26 @@ def fill_gaps(
         or (hole.stop - hole.start) * clock.step > longest * 3600 + 1e-6
     ]
     if refused:
-        raise HemmaError(_refusal(name, clock, refused, len(names), longest))
-    filled = [_without_holes(name, column) for name, column in zip(names, columns, strict=True)]
-    return Filled(filled, (*notes, *_notes(clock, holes, names)))
+        raise HemmaError(_refusal(name, clock, refused, len(series), longest))
+    filled = {name: _without_holes(name, column) for name, column in series.items()}
+    return Columns(clock, filled, (*columns.notes, *notes, *_notes(clock, holes, len(series))))
 
 
-def _spread(
-    clock: Clock, names: Sequence[str], columns: Sequence[Float[np.ndarray, "slots"]]
-) -> tuple[list[Float[np.ndarray, "slots"]], list[str]]:
+def _spread(columns: Columns) -> tuple[dict[str, Series], list[str]]:
     """Prices that come once in several slots, held over the slots that they are given for."""
-    spread, notes = [], []
-    for name, column in zip(names, columns, strict=True):
+    clock, spread, notes = columns.clock, dict(columns.series), []
+    for name, column in columns.series.items():
         period = _period(column) if name.endswith(HOLDS) else 1
         if 1 < period <= LONGEST_HOLD / clock.slot_length:
             latest = _latest(column)
             held = np.isnan(column) & (np.arange(clock.slots) - latest < period)
-            column = np.where(held, column[latest], column)
+            spread[name] = np.where(held, column[latest], column)
             every = duration(period * clock.slot_length)
             notes.append(f"{name} comes once in {every}: each value is held until the next")
-        spread.append(column)
     return spread, notes
 
 
-def _period(column: Float[np.ndarray, "slots"]) -> int:
+def _period(column: Series) -> int:
     """Number of slots between most of the values that follow each other."""
     distances = np.diff(np.flatnonzero(np.isfinite(column)))
     if len(distances) < 2:
@@ -96,12 +81,12 @@ def _period(column: Float[np.ndarray, "slots"]) -> int:
     return int(lengths[np.argmax(counts)]) if 2 * counts.max() > len(distances) else 1
 
 
-def _latest(column: Float[np.ndarray, "slots"]) -> Int[np.ndarray, "slots"]:
+def _latest(column: Series) -> Int[np.ndarray, "slots"]:
     """The slot of the latest value in each slot, the first slot before there is one."""
     return np.maximum.accumulate(np.where(np.isfinite(column), np.arange(len(column)), 0))
 
 
-def _without_holes(name: str, column: Float[np.ndarray, "slots"]) -> Float[np.ndarray, "slots"]:
+def _without_holes(name: str, column: Series) -> Series:
     if name.endswith(HOLDS):
         return column[_latest(column)]
     slots, known = np.arange(len(column)), np.isfinite(column)
@@ -120,9 +105,9 @@ def duration(hours: float) -> str:
     return f"{number:.4g} {unit}{'' if number == 1 else 's'}"
 
 
-def _holes(names: Sequence[str], columns: Sequence[Float[np.ndarray, "slots"]]) -> list[Hole]:
+def _holes(series: Mapping[str, Series]) -> list[Hole]:
     owners: dict[tuple[int, int], list[str]] = {}
-    for name, column in zip(names, columns, strict=True):
+    for name, column in series.items():
         for run in runs(np.isnan(column)):
             owners.setdefault(run, []).append(name)
     return [Hole(start, stop, tuple(owners[start, stop])) for start, stop in sorted(owners)]
@@ -156,32 +141,30 @@ def _longest_stretch(clock: Clock, holes: list[Hole]) -> str:
     return f"The longest stretch without one has {days:.1f} days, {clock.text(start)} to {clock.text(stop)}. "
 
 
-def _notes(clock: Clock, holes: list[Hole], names: Sequence[str]) -> tuple[str, ...]:
+def _notes(clock: Clock, holes: list[Hole], columns: int) -> list[str]:
     notes = []
-    for filled, kind in (
-        ("interpolated", [name for name in names if not name.endswith(HOLDS)]),
-        ("held", [name for name in names if name.endswith(HOLDS)]),
-    ):
-        parts = [replace(hole, columns=tuple(c for c in hole.columns if c in kind)) for hole in holes]
+    for filled, holds in (("interpolated", False), ("held", True)):
+        parts = [
+            replace(hole, columns=tuple(name for name in hole.columns if name.endswith(HOLDS) == holds))
+            for hole in holes
+        ]
         parts = [hole for hole in parts if hole.columns]
-        notes += (
-            _summed(clock, parts, filled)
-            if len(parts) > MOST_NAMED
-            else [
-                f"{hole.duration(clock)} {filled} from {clock.text(hole.start)} in {_where(hole, len(names))}"
-                for hole in parts
-            ]
-        )
-    return tuple(notes)
+        if len(parts) > MOST_NAMED:
+            notes.append(_summed(clock, parts, filled))
+            continue
+        for hole in parts:
+            where = f"from {clock.text(hole.start)} in {_where(hole, columns)}"
+            notes.append(f"{hole.duration(clock)} {filled} {where}")
+    return notes
 
 
-def _summed(clock: Clock, holes: list[Hole], filled: str) -> list[str]:
+def _summed(clock: Clock, holes: list[Hole], filled: str) -> str:
     total = duration(sum(hole.stop - hole.start for hole in holes) * clock.slot_length)
     touched = sorted({column for hole in holes for column in hole.columns})
-    return [
+    return (
         f"{len(holes)} holes {filled}, {total} in all, the first at {clock.text(holes[0].start)}, "
         f"in {', '.join(touched)}"
-    ]
+    )
 
 
 def counted(number: int, what: str) -> str:

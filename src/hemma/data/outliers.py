@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from hemma.data.clock import Clock
+from hemma.data.columns import Series
 from hemma.data.gaps import duration, runs
 
 NO_HOME = 200.0
@@ -42,8 +43,6 @@ PART = 0.1
 """More absurd cells than this share of a column are a part of it in another unit, or a long failure."""
 LONGEST_STILL = {"pv_kw": 24.0, "load_kw": 36.0, "hvac_kw": 48.0, "outdoor_c": 36.0, "indoor_c": 72.0}
 """A sensor whose value stays the same to the last digit for this long [h] is perhaps stuck."""
-
-Series = Float[np.ndarray, "slots"]
 
 
 def believable(values: Float[np.ndarray, "known"]) -> Float[np.ndarray, "believed"]:

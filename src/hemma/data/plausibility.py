@@ -1,12 +1,11 @@
 """Does a column look like its unit? Wrong units are refused with the conversion, odd values are reported."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
-from hemma.data.clock import Clock
+from hemma.data.columns import Columns, Series
 from hemma.data.gaps import duration
 from hemma.data.outliers import absurd_cells, believable, stuck_cells, unusual_cells
 from hemma.data.traces import Traces
@@ -29,25 +28,21 @@ NIGHT_SHARE = 0.01
 NOON_RANGE = (9.5, 16.5)
 """Wall clock hours between which the centre of the PV generation lies, wherever the home is."""
 
-Series = Float[np.ndarray, "slots"]
 
-
-def require_plausible(file: str, clock: Clock, names: Sequence[str], columns: Sequence[Series]) -> None:
+def require_plausible(file: str, columns: Columns) -> None:
     """Refuse columns in another unit than that of their name, and cells that nothing measured; NaN pass."""
     problems = []
-    for name, column in zip(names, columns, strict=True):
-        known = column[np.isfinite(column)]
-        problem = _unit_problem(name, known) if len(known) else None
-        problem = problem or absurd_cells(name, clock, column)
+    for name, column in columns.series.items():
+        problem = _unit_problem(name, column) or absurd_cells(name, columns.clock, column)
         if problem is not None:
             problems.append(problem)
     if problems:
         raise HemmaError(f"{file}: {'; '.join(problems)}")
 
 
-def _unit_problem(name: str, values: Float[np.ndarray, "known"]) -> str | None:
+def _unit_problem(name: str, column: Series) -> str | None:
     """What a whole column says about its unit; single cells that nothing measured do not count."""
-    typical = believable(values)
+    typical = believable(column[np.isfinite(column)])
     if not len(typical):
         return None
     if name.endswith("_kw"):
@@ -117,13 +112,13 @@ def solar_clock(traces: Traces) -> SolarClock | None:
     )
 
 
-def oddities(traces: Traces, clock: Clock, columns: Mapping[str, Series]) -> tuple[str, ...]:
+def oddities(traces: Traces, columns: Columns) -> tuple[str, ...]:
     """What is allowed but worth knowing, one sentence each; ``columns`` are those of the file, filled."""
     e = traces.exogenous
     notes = []
-    for name, column in columns.items():
-        notes += unusual_cells(name, clock, column)
-        notes += stuck_cells(name, clock, column)
+    for name, column in columns.series.items():
+        notes += unusual_cells(name, columns.clock, column)
+        notes += stuck_cells(name, columns.clock, column)
         if name.endswith("_kw") and 0 < column.max() < SMALLEST_POWER:
             notes.append(f"{name} is at most {column.max():.3g} kW: is it in kW?")
     sun = solar_clock(traces)

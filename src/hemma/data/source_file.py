@@ -25,7 +25,11 @@ class SourceFile:
 
 def read_source(path: Path) -> SourceFile:
     """Read a UTF-8 text file, plain or gzip, with or without a byte order mark."""
-    content = read_bytes(path)
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise HemmaError(f"{path}: expected a readable file: {reason}. Check the path") from error
     digest = hashlib.sha256(content).hexdigest()
     if content.startswith(GZIP):
         content = _unpacked(path, content)
@@ -48,15 +52,6 @@ def read_source(path: Path) -> SourceFile:
 
 def _place(path: Path, content: bytes, position: int) -> str:
     return f"{path}, line {content.count(NEWLINE, 0, position) + 1}"
-
-
-def read_bytes(path: Path) -> bytes:
-    """The bytes of a file; HemmaError if it cannot be read."""
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise HemmaError(f"{path}: expected a readable file: {reason}. Check the path") from error
 
 
 def _unpacked(path: Path, content: bytes) -> bytes:

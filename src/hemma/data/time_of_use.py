@@ -10,9 +10,6 @@ from hemma.data.clock import Clock
 from hemma.data.tariff import require_ratio
 from hemma.errors import HemmaError
 
-THURSDAY = 3
-"""Day of the week of 1 January 1970, Monday being 0."""
-
 
 @dataclass(frozen=True)
 class TimeOfUse:
@@ -61,9 +58,7 @@ class TimeOfUse:
         hours = np.zeros(clock.slots)
         for start, stop in self._peaks():
             hours += np.clip(np.minimum(end, stop) - np.maximum(begin, start), 0.0, None)
-        day = (clock.seconds + np.round(clock.offset * 3600).astype(np.int64)) // 86400
-        working = (day + THURSDAY) % 7 < 5
-        return hours / clock.slot_length * (working if self.weekdays_only else 1.0)
+        return hours / clock.slot_length * (clock.weekdays() < 5 if self.weekdays_only else 1.0)
 
     def _peaks(self) -> list[tuple[float, float]]:
         """The peaks of two days as intervals of hours, so that a slot may reach into the second."""

@@ -1,17 +1,14 @@
 """Traces: what a home saw, slot by slot, and its split into a training and a test period."""
 
 from dataclasses import dataclass, replace
-from datetime import datetime
-from typing import TYPE_CHECKING
+from datetime import UTC, datetime
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from hemma.data.clock import DAY, Clock
 from hemma.errors import HemmaError
 from hemma.types import Exogenous
-
-if TYPE_CHECKING:
-    import pandas
 
 TEST_DAYS = 31
 """Length of the test period unless a start is given; the paper's month of August."""
@@ -23,8 +20,7 @@ class Traces:
 
     name: str
     """``austin2021-1``, or the stem of the file."""
-    time: "pandas.DatetimeIndex"
-    """Start of each slot, with a time zone, regular."""
+    clock: Clock
     exogenous: Exogenous
     """What the home did not decide, NumPy float64. Its hour of day is that of the local wall clock."""
     indoor_temperature: Float[np.ndarray, "slots"] | None
@@ -37,27 +33,24 @@ class Traces:
     """One plain sentence, shown wherever results are shown."""
     notes: tuple[str, ...] = ()
     """What the reader repaired or found odd, one sentence each."""
-    utc_offset: Float[np.ndarray, "slots"] | None = None
-    """Wall clock minus UTC [h] in each slot, if it is not that of the zone of ``time``."""
 
     def __post_init__(self):
-        """Refuse what is no regular series: fewer than two slots, lengths that differ, no time zone."""
-        if self.time.tz is None or len(self.time) < 2 or self.exogenous.slots != len(self.time):
+        """Refuse what is no regular series: fewer than two slots, lengths that differ."""
+        if self.slots < 2 or self.exogenous.slots != self.slots:
             raise HemmaError(
-                f"{self.name}: expected at least two slots, a time zone, and one value a slot; got "
-                f"{len(self.time)} time stamps (zone {self.time.tz}) and {self.exogenous.slots} values"
+                f"{self.name}: expected at least two slots and one value a slot; got {self.slots} time "
+                f"stamps and {self.exogenous.slots} values"
             )
 
     @property
     def slots(self) -> int:
         """Number of slots T."""
-        return len(self.time)
+        return self.clock.slots
 
     @property
     def slot_length(self) -> float:
         """dt [h]."""
-        first, second = self.time[:2].tz_convert(None).to_numpy()
-        return float((second - first) / np.timedelta64(1, "h"))
+        return self.clock.slot_length
 
     def window(self, start: int, stop: int) -> "Traces":
         """The slots from ``start`` (included) to ``stop`` (excluded); name and notes stay."""
@@ -67,47 +60,19 @@ class Traces:
 
         return replace(
             self,
-            time=self.time[start:stop],
+            clock=self.clock.window(start, stop),
             exogenous=self.exogenous.window(start, stop),
             indoor_temperature=cut(self.indoor_temperature),
             hvac_power=cut(self.hvac_power),
-            utc_offset=cut(self.utc_offset),
         )
-
-    def offsets(self) -> Float[np.ndarray, "slots"]:
-        """Wall clock minus UTC [h] in each slot."""
-        if self.utc_offset is not None:
-            return self.utc_offset
-        wall, utc = self.time.tz_localize(None), self.time.tz_convert("UTC").tz_localize(None)
-        return np.asarray((wall - utc) / np.timedelta64(1, "h"), float)
-
-    def wall_clock(self) -> "pandas.DatetimeIndex":
-        """Local wall clock at the start of each slot, without a time zone."""
-        import pandas as pd
-
-        utc = self.time.tz_convert("UTC").tz_localize(None)
-        return utc + pd.to_timedelta(np.round(self.offsets() * 3600), unit="s")
 
     def weekdays(self) -> Int[np.ndarray, "slots"]:
         """Day of the week of each slot by the local wall clock, Monday 0."""
-        return np.asarray(self.wall_clock().day_of_week, int)
+        return self.clock.weekdays()
 
     def time_stamps(self) -> list[str]:
         """Start of each slot, ISO 8601 with the offset from UTC: ``2021-08-01T00:00:00-06:00``."""
-        wall = self.wall_clock().strftime("%Y-%m-%dT%H:%M:%S")
-        suffix = {offset: _iso_offset(offset) for offset in set(self.offsets().tolist())}
-        return [f"{w}{suffix[o]}" for w, o in zip(wall, self.offsets().tolist(), strict=True)]
-
-
-def hours_of_day(wall_clock: "pandas.DatetimeIndex") -> Float[np.ndarray, "slots"]:
-    """Hour of the day with its fraction, in [0, 24), of local wall clock times."""
-    seconds = np.asarray(wall_clock.hour * 3600 + wall_clock.minute * 60 + wall_clock.second, float)
-    return seconds / 3600
-
-
-def _iso_offset(hours: float) -> str:
-    minutes = round(abs(hours) * 60)
-    return f"{'-' if hours < 0 else '+'}{minutes // 60:02d}:{minutes % 60:02d}"
+        return self.clock.stamps()
 
 
 @dataclass(frozen=True)
@@ -138,12 +103,9 @@ def split(traces: Traces, test_from: str | None = None) -> Split:
 
 
 def _first_test_slot(traces: Traces, test_from: str | None) -> int:
-    import pandas as pd
-
-    wall = traces.wall_clock()
+    clock = traces.clock
     if test_from is None:
-        end = wall[-1] + pd.Timedelta(hours=traces.slot_length)
-        return int(np.sum(wall < end - pd.Timedelta(days=TEST_DAYS)))
+        return int(np.sum(clock.wall < clock.wall[-1] + clock.step - TEST_DAYS * DAY))
     try:
         moment = datetime.fromisoformat(test_from)
     except ValueError as error:
@@ -151,4 +113,6 @@ def _first_test_slot(traces: Traces, test_from: str | None) -> int:
             f"--test-from: expected a day or a time such as 2021-08-01 or 2021-08-01T00:00:00-06:00, "
             f"got {test_from!r}. Correct it"
         ) from error
-    return int(np.sum((wall if moment.tzinfo is None else traces.time) < pd.Timestamp(moment)))
+    if moment.tzinfo is None:
+        return int(np.sum(clock.wall < moment.replace(tzinfo=UTC).timestamp()))
+    return int(np.sum(clock.seconds < moment.timestamp()))

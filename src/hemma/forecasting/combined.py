@@ -1,6 +1,6 @@
 """Forecasts made of others: their mean, and one that is fitted again as time goes on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax
 import numpy as np
@@ -42,8 +42,6 @@ class RefittedForecast:
         parts = []
         for start in starts:
             stop = min(start + self.days * outlook.day, first + outlook.period.slots)
-            window = Outlook(
-                joined.window(0, start), joined.window(start, stop), outlook.slot_length, outlook.horizon
-            )
+            window = replace(outlook, past=joined.window(0, start), period=joined.window(start, stop))
             parts.append(self.forecaster(window))
         return jax.tree.map(lambda *rows: np.concatenate(rows), *parts)

@@ -56,31 +56,29 @@ class ObservationModel:
 
 
 PAPER = ObservationModel("paper")
-MODELS = {
-    model.name: model
-    for model in (
-        PAPER,
-        ObservationModel("past", "the last 24 hours and the day of the week", past=True),
-        ObservationModel(
-            "published", "the prices of the coming hours as far as they are published", published=True
-        ),
-        ObservationModel(
-            "forecast", "a forecast of the coming hours, and how well it did of late", forecast=True
-        ),
-        ObservationModel(
-            "past and forecast",
-            "the last 24 hours, the day of the week and a forecast of the coming hours",
-            past=True,
-            forecast=True,
-        ),
-        ObservationModel(
-            "published and forecast",
-            "published prices and a forecast of what is not published",
-            published=True,
-            forecast=True,
-        ),
-    )
-}
+_ALL = (
+    PAPER,
+    ObservationModel("past", "the last 24 hours and the day of the week", past=True),
+    ObservationModel(
+        "published", "the prices of the coming hours as far as they are published", published=True
+    ),
+    ObservationModel(
+        "forecast", "a forecast of the coming hours, and how well it did of late", forecast=True
+    ),
+    ObservationModel(
+        "past and forecast",
+        "the last 24 hours, the day of the week and a forecast of the coming hours",
+        past=True,
+        forecast=True,
+    ),
+    ObservationModel(
+        "published and forecast",
+        "published prices and a forecast of what is not published",
+        published=True,
+        forecast=True,
+    ),
+)
+MODELS = {model.name: model for model in _ALL}
 """All that there are, by name."""
 
 
@@ -109,9 +107,9 @@ class Observer:
         """
         outlook, model = replace(outlook, horizon=_horizon(outlook.slot_length)), self.model
         if not model.looks_ahead:
-            return self._assembled(outlook, weekdays, None, None)
+            return self._assembled(outlook, weekdays)
         if not model.forecast:
-            return self._assembled(outlook, weekdays, self._published(outlook, yesterday(outlook)), None)
+            return self._assembled(outlook, weekdays, self._published(outlook, yesterday(outlook)))
         earlier = _a_day_earlier(outlook)
         rows = self.forecaster(earlier)
         misses = _misses(earlier, rows, self.quantities)[outlook.day :]
@@ -126,18 +124,16 @@ class Observer:
         They are whole days in a circle: before the first slot lies the last one. Forecasts of three days are
         fitted to all other days of the training period, so that they err in training as they will later.
         """
-        horizon = _horizon(slot_length)
         learned = training.window(0, slots)
-        circle, model = Outlook(learned, learned, slot_length, horizon), self.model
-        if not model.looks_ahead:
-            return self._assembled(circle, weekdays, None, None)
-        if not model.forecast:
-            rows = yesterday(Outlook(learned, _onwards(circle), slot_length, horizon))
-            return self._assembled(circle, weekdays, self._published_in(circle, _first(rows, slots)), None)
-        rows = self._crossed(training, circle)
-        return self._assembled(
-            circle, weekdays, self._published_in(circle, rows), _misses(circle, rows, self.quantities)
-        )
+        circle, misses = Outlook(learned, learned, slot_length, _horizon(slot_length)), None
+        if not self.model.looks_ahead:
+            return self._assembled(circle, weekdays)
+        if self.model.forecast:
+            rows = self._crossed(training, circle)
+            misses = _misses(circle, rows, self.quantities)
+        else:
+            rows = _first(yesterday(replace(circle, period=_onwards(circle))), slots)
+        return self._assembled(circle, weekdays, self._published_in(circle, rows), misses)
 
     def training_forecast(
         self, training: Exogenous, slots: int, slot_length: float, horizon: float
@@ -155,7 +151,7 @@ class Observer:
         """The rows of a circle with the prices that are published in it."""
         if not self.model.published:
             return rows
-        onwards = Outlook(circle.past, _onwards(circle), circle.slot_length, circle.horizon)
+        onwards = replace(circle, period=_onwards(circle))
         more = _joined(rows, _first(rows, 2 * circle.day))
         return _first(self._published(onwards, more), circle.period.slots)
 
@@ -171,16 +167,15 @@ class Observer:
         for start in range(0, slots, step):
             stop = min(start + step, slots)
             rest = _joined(training.window(stop, training.slots), training.window(0, start))
-            window = training.window(start, stop)
-            parts.append(self.forecaster(Outlook(rest, window, circle.slot_length, circle.horizon)))
+            parts.append(self.forecaster(replace(circle, past=rest, period=training.window(start, stop))))
         return jax.tree.map(lambda *rows: np.concatenate(rows), *parts)
 
     def _assembled(
         self,
         outlook: Outlook,
         weekdays: Int[np.ndarray, "slots"],
-        ahead: Exogenous | None,
-        misses: Float[np.ndarray, "slots quantities"] | None,
+        ahead: Exogenous | None = None,
+        misses: Float[np.ndarray, "slots quantities"] | None = None,
     ) -> Context:
         parts, quantities = [], self.quantities
         if self.model.past:
@@ -204,7 +199,7 @@ def _horizon(slot_length: float) -> float:
 def _last_day(outlook: Outlook, quantities: dict[str, int]) -> list[Context]:
     """Means over each of the last 24 hours, the newest first, from the present value; one a quantity."""
     joined, first = outlook.joined(), outlook.past.slots
-    hour = max(round(1.0 / outlook.slot_length), 1)
+    hour = outlook.hour
     hours = max(outlook.day // hour, 1)
     ends = np.arange(first, first + outlook.period.slots)[:, None] - hour * np.arange(hours)
     parts = []
@@ -265,20 +260,16 @@ def _plain(figures: Float[np.ndarray, "slots figures"]) -> Context:
 
 
 def _beside(parts: list[Context]) -> Context:
-    return Context(
-        np.concatenate([part.figures for part in parts], axis=1),
-        np.concatenate([part.origins for part in parts], axis=1),
-        np.concatenate([part.kinds for part in parts]),
-    )
+    figures = np.concatenate([part.figures for part in parts], axis=1)
+    origins = np.concatenate([part.origins for part in parts], axis=1)
+    return Context(figures, origins, np.concatenate([part.kinds for part in parts]))
 
 
 def _a_day_earlier(outlook: Outlook) -> Outlook:
     """The same outlook with the last day of the past as the first of the period."""
     cut = outlook.past.slots - outlook.day
     joined = outlook.joined()
-    return Outlook(
-        joined.window(0, cut), joined.window(cut, joined.slots), outlook.slot_length, outlook.horizon
-    )
+    return replace(outlook, past=joined.window(0, cut), period=joined.window(cut, joined.slots))
 
 
 def _joined(first: Exogenous, second: Exogenous) -> Exogenous:

@@ -55,6 +55,19 @@ class Outlook:
         """Slots of the horizon H, the present one included."""
         return max(round(self.horizon / self.slot_length), 1)
 
+    @property
+    def hour(self) -> int:
+        """Slots an hour, at least one."""
+        return max(round(1.0 / self.slot_length), 1)
+
+    def require_past(self, needed: int, purpose: str) -> None:
+        """Refuse a past of less than ``needed`` slots; ``purpose`` says what they are needed for."""
+        if self.past.slots < needed:
+            raise HemmaError(
+                f"forecast: expected a past of at least {needed} slots to {purpose}, got {self.past.slots}; "
+                "give longer training traces or a shorter horizon"
+            )
+
     def joined(self) -> Exogenous:
         """Past and period as one series, NumPy float64; slot t of the period is ``past.slots`` + t."""
         past, period = in_numpy((self.past, self.period))

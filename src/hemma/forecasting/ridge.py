@@ -3,7 +3,6 @@
 import numpy as np
 from jaxtyping import Float, Int
 
-from hemma.errors import HemmaError
 from hemma.forecasting.bent import assembled
 from hemma.forecasting.outlook import Outlook, last_known, targets
 from hemma.types import Exogenous
@@ -24,12 +23,7 @@ def fitted(outlook: Outlook) -> Exogenous:
     dark; the selling price lies on the training period's line over the buying price. A past too short to
     learn from raises ``HemmaError``.
     """
-    needed = needed_past(outlook)
-    if outlook.past.slots < needed:
-        raise HemmaError(
-            f"forecast: expected a past of at least {needed} slots to fit a forecast of {outlook.ahead}, got "
-            f"{outlook.past.slots}; give longer training traces or a shorter horizon"
-        )
+    outlook.require_past(needed_past(outlook), f"fit a forecast of {outlook.ahead}")
     return assembled(outlook, lambda series: _regression(outlook, series.z))
 
 
@@ -40,15 +34,11 @@ def needed_past(outlook: Outlook) -> int:
 
 def _history(outlook: Outlook) -> int:
     """Slots that the features look back: a day and an hour."""
-    return outlook.day + _hour(outlook)
-
-
-def _hour(outlook: Outlook) -> int:
-    return max(round(1.0 / outlook.slot_length), 1)
+    return outlook.day + outlook.hour
 
 
 def _regression(outlook: Outlook, z: Float[np.ndarray, "joined"]) -> Float[np.ndarray, "slots horizon"]:
-    asked, day, hour = outlook.targets(), outlook.day, _hour(outlook)
+    asked, day, hour = outlook.targets(), outlook.day, outlook.hour
     learned = targets(_history(outlook), outlook.past.slots - outlook.ahead + 1, outlook.ahead)
     weights = _ridge(_features(z, learned, day, hour), z[learned])
     return np.einsum("tkf,kf->tk", _features(z, asked, day, hour), weights)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from hemma.errors import HemmaError
 from hemma.forecasting.bent import assembled
 from hemma.forecasting.outlook import DAY, Outlook, targets
 from hemma.home.checks import require
@@ -41,13 +40,7 @@ class ShapeForecast:
 
     def __call__(self, outlook: Outlook) -> Exogenous:
         """All quantities; raises ``HemmaError`` where the past is shorter than ``needed_past``."""
-        needed = self.needed_past(outlook)
-        if outlook.past.slots < needed:
-            raise HemmaError(
-                f"forecast: expected a past of at least {needed} slots to learn from the last "
-                f"{self.history:g} h, got {outlook.past.slots}; give longer training traces or a shorter "
-                "horizon"
-            )
+        outlook.require_past(self.needed_past(outlook), f"learn from the last {self.history:g} h")
         return assembled(outlook, lambda series: self._regression(outlook, series.z))
 
     def needed_past(self, outlook: Outlook) -> int:

@@ -16,7 +16,7 @@ from hemma.evaluation import (
     summarise,
     summarise_homes,
 )
-from hemma.results.findings import Aggregate, Aggregated, AggregateMethod, Improvement, PairedDifference
+from hemma.results.findings import Aggregate, Aggregated, AggregateMethod, ImprovementRecord, PairedDifference
 from hemma.results.results import HomeResults
 from hemma.results.summary import COMPARED, bounds
 
@@ -31,7 +31,7 @@ WORST: dict[str, Callable[[Sequence[float]], float]] = {
 """The metrics that make sense over several homes, and the worst of several values of each."""
 
 
-def improvements(homes: Sequence[HomeResults]) -> tuple[Improvement, ...]:
+def improvements(homes: Sequence[HomeResults]) -> tuple[ImprovementRecord, ...]:
     """Every pair of methods that all ``homes`` have, in their order, each pair once."""
     return tuple(_improvement(homes, method, over) for method, over in combinations(_shared(homes), 2))
 
@@ -66,10 +66,10 @@ def _values(home: HomeResults, method: str, metric: str) -> list[float | None]:
     return [getattr(run, metric) for run in home.methods[method].runs]
 
 
-def _improvement(homes: Sequence[HomeResults], method: str, over: str) -> Improvement:
+def _improvement(homes: Sequence[HomeResults], method: str, over: str) -> ImprovementRecord:
     pairs = [Pair(_sample(home, method), _sample(home, over)) for home in homes]
     found = probability_of_improvement(pairs, NEGLIGIBLE)
-    return Improvement(
+    return ImprovementRecord(
         method=method, over=over, probability=found.probability, interval=bounds(found.interval)
     )
 

@@ -7,7 +7,7 @@ from hemma.evaluation import IntervalKind
 from hemma.record import Number, Range, Record
 
 
-class Improvement(Record):
+class ImprovementRecord(Record):
     """How probably a run of one method has a lower regret than a run of another."""
 
     method: str
@@ -75,5 +75,5 @@ class Aggregate(Record):
 
     homes: tuple[str, ...] = ()
     methods: dict[str, AggregateMethod] = Field(default_factory=dict)
-    probability_of_improvement: tuple[Improvement, ...] = ()
+    probability_of_improvement: tuple[ImprovementRecord, ...] = ()
     paired: tuple[PairedDifference, ...] = ()

@@ -47,12 +47,10 @@ def plain(value: Any) -> Any:
     """``value`` in a form that JSON writes the same way each time; arrays become digests of their content."""
     if value is None or isinstance(value, str | bool | int | float):
         return value
-    if isinstance(value, type | FunctionType):
-        return (
-            f"{value.__module__}.{value.__qualname__}"
-            if isinstance(value, FunctionType)
-            else value.__qualname__
-        )
+    if isinstance(value, FunctionType):
+        return f"{value.__module__}.{value.__qualname__}"
+    if isinstance(value, type):
+        return value.__qualname__
     if isinstance(value, date):
         return value.isoformat()
     if isinstance(value, tuple | list):

@@ -11,7 +11,7 @@ from hemma.errors import HemmaError
 from hemma.results.comparisons import aggregate, improvements
 from hemma.results.fingerprint import code
 from hemma.results.progress import Progress
-from hemma.results.reading import json_content, read_json, write_record
+from hemma.results.reading import items, json_content, read_json, write_record
 from hemma.results.results import RESULTS_FILE, HomeResults, Results
 
 CODE = code("home", "identification", "optimisation", "rl", "irl", "forecasting", "control", "evaluation")
@@ -119,13 +119,9 @@ def is_part_of(part: Any, whole: Any) -> bool:
 
 def _files(content: Any) -> set[str]:
     """Schedules and curves that entries of homes name, at whatever depth."""
-    named, waiting = set(), [content]
-    while waiting:
-        item = waiting.pop()
-        if isinstance(item, list):
-            waiting += item
-        elif isinstance(item, dict):
-            waiting += item.values()
+    named = set()
+    for item in items(content):
+        if isinstance(item, dict):
             listed = item.get("schedules")
             found = [item.get("schedule"), item.get("curve"), *(listed if isinstance(listed, list) else [])]
             named |= {name for name in found if isinstance(name, str)}

@@ -23,20 +23,5 @@ class Progress(Protocol):
         """Something that a reader of the results should know."""
 
 
-class Silence:
-    """Progress for callers who do not watch."""
-
-    def started(self, stage: str, total: int) -> None:
-        """Nothing."""
-
-    def advanced(self, stage: str, done: int, message: str) -> None:
-        """Nothing."""
-
-    def finished(self, stage: str, message: str) -> None:
-        """Nothing."""
-
-    def reused(self, stage: str, message: str) -> None:
-        """Nothing."""
-
-    def noticed(self, message: str) -> None:
-        """Nothing."""
+class Silence(Progress):
+    """Progress for callers who do not watch: nothing is said."""

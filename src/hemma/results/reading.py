@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -52,15 +53,21 @@ def read_json(path: Path) -> Any:
 
 
 def _require_text(content: Any) -> None:
+    for item in items(content):
+        if isinstance(item, str) and NO_TEXT.search(item):
+            raise HemmaError(f"{shortened(ascii(item))} holds characters that no text has")
+
+
+def items(content: Any) -> Iterator[Any]:
+    """Whatever stands in the content of a JSON file, at any depth: mappings, lists, keys and values."""
     waiting = [content]
     while waiting:
         item = waiting.pop()
+        yield item
         if isinstance(item, list):
             waiting += item
         elif isinstance(item, dict):
             waiting += [*item, *item.values()]
-        elif isinstance(item, str) and NO_TEXT.search(item):
-            raise HemmaError(f"{shortened(ascii(item))} holds characters that no text has")
 
 
 def write_record(path: Path, record: Record) -> None:

@@ -8,7 +8,7 @@ from pydantic import Field
 from hemma.errors import HemmaError
 from hemma.evaluation import RegretSplit
 from hemma.record import Band, Finite, Record
-from hemma.results.findings import Aggregate, Improvement, ParetoPoint
+from hemma.results.findings import Aggregate, ImprovementRecord, ParetoPoint
 from hemma.results.reading import read_record
 from hemma.results.records import (
     DemonstrationRuns,
@@ -45,7 +45,7 @@ class HomeResults(Record):
     regret: dict[str, RegretSplit] = Field(default_factory=dict)
     """By method."""
     pareto: tuple[ParetoPoint, ...] = ()
-    probability_of_improvement: tuple[Improvement, ...] = ()
+    probability_of_improvement: tuple[ImprovementRecord, ...] = ()
 
     @property
     def test_days(self) -> float:

@@ -3,39 +3,16 @@
 import csv
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float
 
 from hemma.checkpoint import write_atomically
-from hemma.errors import HemmaError
 from hemma.evaluation.replay import Outcome
 from hemma.types import Exogenous
 
 SCHEDULE_COLUMNS = ("time", "battery_kw", "hvac_kw", "battery_kwh", "indoor_c", "grid_kw", "cost")
 EXOGENOUS_COLUMNS = ("time", "pv_kw", "load_kw", "outdoor_c", "buy_per_kwh", "sell_per_kwh")
-
-
-@dataclass(frozen=True)
-class SavedSchedule:
-    """A schedule as read back; energies and temperatures at the end of each slot."""
-
-    time: tuple[str, ...]
-    """Start of each slot, ISO 8601 with offset."""
-    battery_power: Float[np.ndarray, "slots"]
-    """e [kW], charging positive."""
-    hvac_power: Float[np.ndarray, "slots"]
-    """h [kW]."""
-    battery_energy: Float[np.ndarray, "slots"]
-    """E [kWh]."""
-    indoor_temperature: Float[np.ndarray, "slots"]
-    """T_in [degC]."""
-    grid_power: Float[np.ndarray, "slots"]
-    """g [kW], buying positive."""
-    cost: Float[np.ndarray, "slots"]
-    """X1 + X2 [currency]."""
 
 
 def write_schedule(path: Path, time: Sequence[str], outcome: Outcome) -> None:
@@ -61,21 +38,6 @@ def write_exogenous(path: Path, time: Sequence[str], exogenous: Exogenous) -> No
         exogenous.selling_price,
     )
     _write(path, EXOGENOUS_COLUMNS, time, columns)
-
-
-def read_schedule(path: Path) -> SavedSchedule:
-    """Read what ``write_schedule`` wrote."""
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            header, *rows = csv.reader(file)
-        if tuple(header) != SCHEDULE_COLUMNS:
-            raise ValueError(f"its columns are {','.join(header)}")
-        numbers = np.array([[float(cell) for cell in row[1:]] for row in rows])
-        columns = numbers.reshape(len(rows), len(SCHEDULE_COLUMNS) - 1).T
-    except (OSError, ValueError) as error:
-        expected = ",".join(SCHEDULE_COLUMNS)
-        raise HemmaError(f"{path}: expected a schedule with the columns {expected}: {error}") from error
-    return SavedSchedule(tuple(row[0] for row in rows), *columns)
 
 
 def _write(path: Path, header: Sequence[str], time: Sequence[str], columns: Sequence) -> None:

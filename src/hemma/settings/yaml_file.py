@@ -22,7 +22,7 @@ SWITCHES = {"yes": True, "true": True, "on": True, "no": False, "false": False, 
 NOTHING = ("", "~", "null")
 
 
-class Section(dict[str, Any]):
+class YamlMapping(dict[str, Any]):
     """A mapping of the file."""
 
     lines: dict[str, int]
@@ -56,7 +56,7 @@ def place_in(content: Any, keys: Sequence[str | int]) -> str:
     """``line 3: comfort.low_c``: where a setting stands, or would stand; the line where it is known."""
     line, inner = None, content
     for key in keys:
-        if isinstance(inner, Section):
+        if isinstance(inner, YamlMapping):
             line = inner.lines.get(str(key), line)
         inner = inner.get(str(key)) if isinstance(inner, Mapping) else None
     name = ".".join(shortened(key) for key in keys) or "the file"
@@ -113,8 +113,8 @@ def _content(node: yaml.Node) -> Any:
     return _plain(node) if node.style is None else _word(node)
 
 
-def _section(node: yaml.MappingNode) -> Section:
-    section = Section()
+def _section(node: yaml.MappingNode) -> YamlMapping:
+    section = YamlMapping()
     section.lines = {}
     for key, value in node.value:
         if not isinstance(key, yaml.ScalarNode):

@@ -5,7 +5,6 @@ uses is grid + solar + solar2 (old files have it as ``use``, and PV as ``gen``).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -25,18 +24,6 @@ TURNED_SHARE = 0.05
 """A circuit that is below the noise in more than this share of its rows is wired the other way round."""
 
 Series = Float[np.ndarray, "rows"]
-
-
-@dataclass(frozen=True)
-class HomePower:
-    """What a home generated and used, NaN where that is not known."""
-
-    pv_kw: Series
-    load_kw: Series
-    """Without HVAC, and without cars and battery if they were excluded."""
-    hvac_kw: Series | None
-    """None if no HVAC circuit is instrumented: it is part of the load then."""
-    notes: tuple[str, ...]
 
 
 def instrumented(columns: Mapping[str, Series]) -> dict[str, Series]:
@@ -80,8 +67,12 @@ class Circuits:
         return np.where(wrong, np.nan, np.maximum(series, 0.0))
 
 
-def home_power(circuits: Circuits, *, exclude_cars: bool, exclude_battery: bool) -> HomePower:
-    """PV, load = use - HVAC (- cars, - battery charging when excluded) and HVAC of a home."""
+def home_power(circuits: Circuits, *, exclude_cars: bool, exclude_battery: bool) -> dict[str, Series]:
+    """``pv_kw``, ``load_kw`` and ``hvac_kw`` of a home, NaN where that is not known.
+
+    Load = use - HVAC (- cars, - battery charging when excluded). If no HVAC circuit is instrumented it is a
+    part of the load, and there is no ``hvac_kw``.
+    """
     pv = circuits.sum("gen") if circuits.has("gen") else circuits.sum(*SOLAR)
     load = used = _use(circuits, pv)
     hvac = circuits.sum(*HVAC) if circuits.has(*HVAC) else None
@@ -98,7 +89,8 @@ def home_power(circuits: Circuits, *, exclude_cars: bool, exclude_battery: bool)
         load = load - circuits.columns[BATTERY] if exclude_battery else load
         circuits.notes.append(_battery_note(exclude_battery))
     load = circuits.magnitude("load (use without the other circuits)", load) if load is not used else load
-    return HomePower(pv_kw=pv, load_kw=load, hvac_kw=hvac, notes=tuple(circuits.notes))
+    power = {"pv_kw": pv, "load_kw": load}
+    return power if hvac is None else {**power, "hvac_kw": hvac}
 
 
 def _use(circuits: Circuits, pv: Series) -> Series:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from hemma.data.clock import Stamps
+from hemma.data.clock import Stamps, wall_clock
 from hemma.data.gaps import counted
 from hemma.data.pecan_street.circuits import CIRCUITS
 from hemma.data.pecan_street.files import DataportFile, Piece
@@ -44,7 +44,7 @@ def rows_of_home(file: DataportFile, home: int, stamp_zone: str, home_zone: str)
 
 def between(stamps: Stamps, start: str | None, stop: str | None) -> Bool[np.ndarray, "rows"]:
     """Which rows lie in the period from ``start`` (included) to ``stop`` (excluded), wall clock times."""
-    wall = (stamps.seconds + np.round(stamps.offset * 3600).astype(np.int64)).astype("datetime64[s]")
+    wall = wall_clock(stamps.seconds, stamps.offset).astype("datetime64[s]")
     inside = np.ones(len(wall), bool)
     for text, bound in ((start, np.greater_equal), (stop, np.less)):
         if text is None:

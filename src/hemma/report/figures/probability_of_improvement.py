@@ -12,7 +12,7 @@ from hemma.report.drawing.canvas import FULL_WIDTH, new_figure
 from hemma.report.figures.figure import HomeFigure, ReportFigure, ReportSection, Words
 from hemma.report.methods import in_order
 from hemma.report.numbers import decimals
-from hemma.results.findings import Improvement
+from hemma.results.findings import ImprovementRecord
 from hemma.results.results import HomeResults, Results
 
 _COLOURS = LinearSegmentedColormap.from_list(
@@ -32,11 +32,11 @@ class Chances:
     """All pairs of methods."""
 
     methods: tuple[str, ...]
-    pairs: dict[tuple[str, str], Improvement]
+    pairs: dict[tuple[str, str], ImprovementRecord]
     """By (method, over); both directions of every pair that is known."""
 
 
-def comparison_of(improvements: Iterable[Improvement], methods: set[str]) -> Chances:
+def comparison_of(improvements: Iterable[ImprovementRecord], methods: set[str]) -> Chances:
     """The pairs among the methods; a pair given one way only is turned around."""
     known = [one for one in improvements if one.probability is not None and {one.method, one.over} <= methods]
     pairs = {(entry.over, entry.method): _turned(entry) for entry in known}
@@ -65,7 +65,7 @@ def improvement_figure(comparison: Chances) -> Figure:
     return figure
 
 
-def _draw_cell(axes: Axes, row: int, column: int, entry: Improvement) -> None:
+def _draw_cell(axes: Axes, row: int, column: int, entry: ImprovementRecord) -> None:
     """A rectangle and not a pixel of an image: the figure stays sharp and holds no foreign file."""
     corner, colour = (column - 0.5, row - 0.5), _colour(entry)
     axes.add_patch(Rectangle(corner, 1, 1, facecolor=colour, edgecolor="white", lw=1.5))
@@ -76,18 +76,18 @@ def _draw_cell(axes: Axes, row: int, column: int, entry: Improvement) -> None:
         axes.text(column, row + 0.25, said, ha="center", va="center", fontsize=6.2)
 
 
-def _colour(entry: Improvement) -> tuple[float, float, float, float]:
+def _colour(entry: ImprovementRecord) -> tuple[float, float, float, float]:
     """Of the probability; pale where its interval leaves open which of the two is better."""
     chance = 0.5 if entry.probability is None else entry.probability
     is_open = entry.interval is not None and entry.interval[0] <= 0.5 <= entry.interval[1]
     return _COLOURS(0.5 + (_PALE if is_open else 1.0) * (chance - 0.5))
 
 
-def _turned(entry: Improvement) -> Improvement:
+def _turned(entry: ImprovementRecord) -> ImprovementRecord:
     """The same pair seen from the other method: 1 - p."""
     chance = None if entry.probability is None else 1 - entry.probability
     interval = None if entry.interval is None else (1 - entry.interval[1], 1 - entry.interval[0])
-    return Improvement(method=entry.over, over=entry.method, probability=chance, interval=interval)
+    return ImprovementRecord(method=entry.over, over=entry.method, probability=chance, interval=interval)
 
 
 def _over_homes(results: Results) -> Chances | None:
@@ -95,7 +95,7 @@ def _over_homes(results: Results) -> Chances | None:
     return _among_learned(pairs, results.finished.values())
 
 
-def _among_learned(improvements: Iterable[Improvement], homes: Iterable[HomeResults]) -> Chances | None:
+def _among_learned(improvements: Iterable[ImprovementRecord], homes: Iterable[HomeResults]) -> Chances | None:
     """Among the learned methods and two others: what knows nothing by chance either beats another or not."""
     learned = {name for home in homes for name, method in home.methods.items() if method.is_learned}
     found = comparison_of(improvements, learned.union(NOT_LEARNED) if learned else set())

@@ -5,12 +5,10 @@ All lie in the training period; its end measures every one of them, and no polic
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
 
 import numpy as np
 
 from hemma.data import Traces, split
-from hemma.data.clock import Clock
 from hemma.data.time_of_use import TimeOfUse
 from hemma.errors import HemmaError
 from hemma.settings.experiment import Experiment
@@ -88,9 +86,7 @@ def _twice_the_spread(traces: Traces) -> Traces:
 def _time_of_use(traces: Traces) -> Traces:
     """Two prices with the mean of the real ones."""
     tariff = TimeOfUse(1.0, PEAK_RATIO, *PEAK)
-    start = datetime.fromisoformat(traces.time_stamps()[0]).timestamp()
-    step = round(3600 * traces.slot_length)
-    shape = tariff.buying_price(Clock(round(start), step, traces.offsets()))
+    shape = tariff.buying_price(traces.clock)
     return _priced(traces, shape * float(np.mean(traces.exogenous.buying_price)) / shape.mean())
 
 
