@@ -10,9 +10,9 @@ from test_optimum import TwoNodes, dense, traces
 from hemma.control.rolling import RollingPlanner
 from hemma.home import Battery, Home, Hvac, benchmark_home, replay_in_double
 from hemma.optimisation.battery import schedule_battery
-from hemma.optimisation.convex import Convex
+from hemma.optimisation.exact.convex import Convex
+from hemma.optimisation.exact.programme import EXACT
 from hemma.optimisation.optimum import optimum_problem
-from hemma.optimisation.programme import EXACT
 from hemma.types import Exogenous
 
 

@@ -5,7 +5,7 @@ import sys
 
 SOLVE = """
 import numpy as np
-from hemma.optimisation.programme import EXACT, Programme
+from hemma.optimisation.exact.programme import EXACT, Programme
 programme = Programme(2)
 columns = programme.add_columns(0.0, 1.0, cost=-1.0)
 programme.add_rows(-np.inf, 1.5, (columns.reshape(1, 2), 1.0))

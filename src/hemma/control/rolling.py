@@ -8,9 +8,9 @@ from hemma.errors import HemmaError
 from hemma.home import AbstractController, Home, Memory
 from hemma.home.precision import in_numpy
 from hemma.optimisation.affine import AffineResponse, affine_response
-from hemma.optimisation.odd_prices import best_plan
-from hemma.optimisation.planning import PlanningProblem
-from hemma.optimisation.programme import SolverSettings
+from hemma.optimisation.exact.odd_prices import best_plan
+from hemma.optimisation.exact.planning import PlanningProblem
+from hemma.optimisation.exact.programme import SolverSettings
 from hemma.types import Action, Array, Exogenous, Observation
 
 DEAR = 1000.0

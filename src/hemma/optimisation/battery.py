@@ -8,10 +8,10 @@ from jaxtyping import Float
 from hemma.home import Home, HomeState
 from hemma.home.precision import in_numpy
 from hemma.optimisation.carry_out import carry_out
+from hemma.optimisation.exact.odd_prices import best_plan
+from hemma.optimisation.exact.planning import PlanningProblem
+from hemma.optimisation.exact.programme import EXACT, SolverSettings
 from hemma.optimisation.horizon import WHOLE_PERIOD, Horizon
-from hemma.optimisation.odd_prices import best_plan
-from hemma.optimisation.planning import PlanningProblem
-from hemma.optimisation.programme import EXACT, SolverSettings
 from hemma.types import Action, Exogenous
 
 ZERO = 1e-9

@@ -11,9 +11,9 @@ from hemma.errors import HemmaError
 from hemma.home import Home, HomeState, Trajectory
 from hemma.optimisation.battery import BatterySchedule, schedule_battery
 from hemma.optimisation.carry_out import carry_out
+from hemma.optimisation.exact.programme import SolverSettings
 from hemma.optimisation.horizon import EVERY_DAY, WHOLE_PERIOD, Horizon
 from hemma.optimisation.hvac import DescentSettings, plan_hvac
-from hemma.optimisation.programme import SolverSettings
 from hemma.types import Action, Exogenous
 
 Progress = Callable[[int, int], None]

@@ -6,8 +6,8 @@ from jaxtyping import Float
 
 from hemma.home import Home, Trajectory
 from hemma.optimisation.carry_out import carry_out
+from hemma.optimisation.exact.programme import EXACT, SolverSettings
 from hemma.optimisation.optimum import optimum_problem
-from hemma.optimisation.programme import EXACT, SolverSettings
 from hemma.types import Array, Exogenous
 
 

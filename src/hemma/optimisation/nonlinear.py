@@ -21,7 +21,7 @@ from hemma.errors import HemmaError
 from hemma.home import ExplicitThermalModel, Home, HomeState, Trajectory
 from hemma.home.precision import in_numpy
 from hemma.optimisation.carry_out import carry_out
-from hemma.optimisation.constraints import ROUNDING, arbitrage_pays, idling_pays
+from hemma.optimisation.exact.constraints import ROUNDING, arbitrage_pays, idling_pays
 from hemma.optimisation.nonlinear_programme import NonlinearProgramme, Symbols
 from hemma.types import Action, Exogenous
 

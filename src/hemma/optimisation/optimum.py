@@ -13,10 +13,10 @@ from hemma.home.precision import in_numpy
 from hemma.optimisation.affine import AffineResponse, affine_response
 from hemma.optimisation.battery import relative_gap
 from hemma.optimisation.carry_out import carry_out
-from hemma.optimisation.constraints import add_building
-from hemma.optimisation.odd_prices import best_plan
-from hemma.optimisation.planning import PlanningProblem
-from hemma.optimisation.programme import EXACT, Programme, SolverSettings
+from hemma.optimisation.exact.constraints import add_building
+from hemma.optimisation.exact.odd_prices import best_plan
+from hemma.optimisation.exact.planning import PlanningProblem
+from hemma.optimisation.exact.programme import EXACT, Programme, SolverSettings
 from hemma.types import Action, Array, Exogenous
 
 BUDGET_SLACK = 1e-7

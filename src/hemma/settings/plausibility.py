@@ -16,10 +16,10 @@ from hemma.identification.excitation import Excitation
 from hemma.identification.settings import IdentificationSettings
 from hemma.irl.cloning import CloningSettings
 from hemma.irl.maxent import MaxEntSettings
+from hemma.optimisation.exact.programme import SolverSettings
 from hemma.optimisation.hierarchy import HierarchySettings
 from hemma.optimisation.horizon import Horizon
 from hemma.optimisation.hvac import DescentSettings
-from hemma.optimisation.programme import SolverSettings
 from hemma.settings.experiment import (
     ComfortPrices,
     DataEfficiency,

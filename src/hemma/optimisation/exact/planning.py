@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from hemma.home import Home
 from hemma.optimisation.affine import AffineResponse
 from hemma.optimisation.carry_out import net_power
-from hemma.optimisation.constraints import (
+from hemma.optimisation.exact.constraints import (
     BatteryColumns,
     Block,
     ThermalColumns,
@@ -17,7 +17,7 @@ from hemma.optimisation.constraints import (
     comfort_budget,
     power_balance,
 )
-from hemma.optimisation.programme import Programme, Solution
+from hemma.optimisation.exact.programme import Programme, Solution
 from hemma.types import Exogenous
 
 

@@ -1,8 +1,8 @@
 """The best plan at any prices: a linear programme, and modes first where they are odd.
 
-Where selling is dearer than buying or burning energy pays, modes (``optimisation.modes``) take the place of
-branch and bound. They prove a bound with prices of comfort and of the other slots' energy that are the duals
-of a linear programme; see ``docs/expert.md``.
+Where selling is dearer than buying or burning energy pays, modes (``optimisation.exact.modes``) take the
+place of branch and bound. They prove a bound with prices of comfort and of the other slots' energy that are
+the duals of a linear programme; see ``docs/expert.md``.
 """
 
 from dataclasses import dataclass, replace
@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from hemma.optimisation.constraints import idling_pays
-from hemma.optimisation.modes import BestModes, Building, SlotModes, best_modes
-from hemma.optimisation.planning import Plan, PlanningProblem, WrittenProblem, written
-from hemma.optimisation.programme import EXACT, Solution, SolverSettings
+from hemma.optimisation.exact.constraints import idling_pays
+from hemma.optimisation.exact.modes import BestModes, Building, SlotModes, best_modes
+from hemma.optimisation.exact.planning import Plan, PlanningProblem, WrittenProblem, written
+from hemma.optimisation.exact.programme import EXACT, Solution, SolverSettings
 
 FORGIVEN = 0.1
 """Share of the allowed gap that the dynamic programme may use up."""

@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, Int
 from hemma.errors import HemmaError
 from hemma.home import Battery, ComfortBand, Home
 from hemma.optimisation.affine import AffineResponse
-from hemma.optimisation.programme import Programme
+from hemma.optimisation.exact.programme import Programme
 from hemma.types import Exogenous
 
 ROUNDING = 1e-6

@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hemma.home import Battery, Home
-from hemma.optimisation.convex import Convex
+from hemma.optimisation.exact.convex import Convex
 
 MOST_PAIRS = 256
 """Pairs kept; where more would be needed, the best are, and nothing is proved."""
