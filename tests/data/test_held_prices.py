@@ -115,5 +115,5 @@ def test_a_price_file_with_empty_cells_holds_as_well(tmp_path):
     (tmp_path / "p.csv").write_text("\n".join(["time,buy_per_kwh", *rows]))
     start = int(np.datetime64("2021-06-01T06:30", "s").astype(int))
     found = price(tmp_path / "p.csv", "buy_per_kwh", Clock(start, 900, np.zeros(90)))
-    np.testing.assert_allclose(found.values, held(4, 96)[2:92], atol=1e-12)
+    np.testing.assert_allclose(found.series["buy_per_kwh"], held(4, 96)[2:92], atol=1e-12)
     assert found.notes == ("buy_per_kwh comes once in 1 hour: each value is held until the next of p.csv",)
