@@ -61,15 +61,18 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
     duals, bound = _duals(whole, relaxed), relaxed.bound
     tolerance = FORGIVEN * settings.relative_gap * abs(relaxed.objective) / problem.exogenous.slots
     best: Plan | None = None
+    idle = 0  # rounds since the last that found something: without and with splits
     for count in range(settings.rounds):
         modes = _modes(problem, duals, tolerance, splits=count % 2 == 0)
+        before = bound, None if best is None else best.objective
         bound = max(bound, modes.bound - duals.comfort * (problem.budget or 0.0))
         inside = _in_modes(problem, modes)
         found = inside.programme.solve(settings)
         if best is None or found.objective < best.objective:
             best = inside.read(found)
         best = replace(best, bound=bound)
-        if _proves(settings, best):
+        idle = idle + 1 if before == (bound, best.objective) else 0
+        if _proves(settings, best) or idle == 2:
             break
         duals = _duals(inside, found)
     assert best is not None
