@@ -27,7 +27,7 @@ METRICS = {
     "reference_gap",
     "seconds_to_train",
 }
-LESSONS = {"HA-1", "AIRL-1-days", "HA-1-bands"}
+JOBS = {"HA-1", "AIRL-1-days", "HA-1-bands"}
 TOGETHER = "HA-1-and-2-more"
 """They are trained in one call."""
 NOT_LEARNED = {
@@ -127,7 +127,7 @@ def test_repeating_the_command_computes_nothing_and_changes_nothing(finished):
     watching = Watching()
     run(tiny_job(folder), Stage.EVALUATE, watching)
     assert watching.done == []
-    assert set(watching.kept) >= LESSONS
+    assert set(watching.kept) >= JOBS
     after = {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
     assert after == before
 

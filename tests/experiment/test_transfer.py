@@ -13,7 +13,7 @@ from hemma.errors import HemmaError
 from hemma.irl.learned_reward import load_rewards
 from hemma.irl.reward import ShapedReward
 from hemma.settings.experiment import Experiment
-from hemma.studies.transfer.changes import CHANGES
+from hemma.studies.transfer.changes import CHANGES, changed_cases
 from hemma.studies.transfer.run import GAIL, POLICY, TransferJob, transfer
 from tiny_experiment import Watching, tiny_experiment
 
