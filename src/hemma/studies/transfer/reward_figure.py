@@ -73,7 +73,7 @@ def battery_figure(maps: Sequence[BatteryMap]) -> Figure:
         below.set_xlabel("Buying price (per kWh)")
     panels[0, 0].set_ylabel("Paid best by r\nBattery energy (kWh)")
     panels[1, 0].set_ylabel("Paid best by g alone\nBattery energy (kWh)")
-    _colour_bar(figure, panels, "Battery power, charging positive (kW)", aspect=36)
+    _colour_bar(figure, panels, "Battery power, charging positive (kW)", aspect=36.0)
     _explain(figure, f"runs differ by more than {plain(spread)} kW (standard deviation)")
     return figure
 
@@ -95,7 +95,7 @@ def comfort_figure(one: ComfortMap) -> Figure:
         axes.set_title(f"Paid best by {name}")
         axes.set_xlabel("Outdoor temperature (°C)")
     panels[0].set_ylabel("Indoor temperature (°C)")
-    _colour_bar(maps, panels, "Indoors at the end of the slot (°C)", aspect=30)
+    _colour_bar(maps, panels, "Indoors at the end of the slot (°C)", aspect=30.0)
     _pay(curves.subplots(), one)
     _explain(maps, f"runs differ by more than {plain(TEMPERATURE_SPREAD)} °C (standard deviation)")
     return figure
