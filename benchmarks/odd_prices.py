@@ -40,6 +40,7 @@ def tariffs(x: Exogenous) -> dict[str, Exogenous]:
         "negative, u- = 0.9 u+": (-u, -0.9 * u),
         "every third slot negative": (np.where(np.arange(x.slots) % 3 == 0, -u, u),) * 2,
         "negative, u- = 1.1 u+": (-u, -1.1 * u),
+        "flat, -0.10 and -0.12": (-0.1 * flat, -0.12 * flat),
     }
     return {name: replace(x, buying_price=b, selling_price=s) for name, (b, s) in prices.items()}
 
