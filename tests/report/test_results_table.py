@@ -88,6 +88,15 @@ def test_an_undefined_metric_is_a_dash(small, undefined):
     assert str(results_table(folder)[0].measures["Share of savings"]) == "–"
 
 
+def test_no_deviation_is_told_to_be_perhaps_negative(small):
+    folder, content = small
+    interval = content["homes"]["home"]["methods"]["HA-1"]["interval"]
+    interval["mean_temperature_deviation"] = [-0.0005, 0.0029]
+    save_results(folder, content)
+    cell = next(row for row in results_table(folder) if row.method == "HA-1").measures["Mean deviation"]
+    assert cell.detail == "[0, 0.0029]"
+
+
 def test_negative_costs_and_other_currencies(small):
     folder, content = small
     home = content["homes"]["home"]

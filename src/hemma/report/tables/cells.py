@@ -1,5 +1,6 @@
 """The cells of all tables: a value, and below it something smaller."""
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -38,9 +39,15 @@ class Notation:
     bare: Callable[[float | None], str]
     """Without it."""
 
+    least: float = -math.inf
+    """What it is never below; the part of an interval that lies there cannot be true."""
+
     def range(self, bounds: Bounds) -> str:
         """``[low, high]``, or nothing."""
-        return "" if bounds is None else f"[{self.bare(bounds[0])}, {self.bare(bounds[1])}]"
+        if bounds is None:
+            return ""
+        low, high = (self.bare(max(bound, self.least)) for bound in bounds)
+        return f"[{low}, {high}]"
 
     def cell(self, mean: float | None, bounds: Bounds = None) -> Cell:
         """The mean with its unit above its interval."""
@@ -52,7 +59,8 @@ class Notation:
 
 
 PERCENT = Notation(percent, hundredths)
-DEGREES = Notation(degrees, fine)
+DEGREES = Notation(degrees, fine, least=0.0)
+"""Of deviations."""
 CHANCE = Notation(lambda value: decimals(value, 2), lambda value: decimals(value, 2))
 NOTHING = Cell(DASH)
 
