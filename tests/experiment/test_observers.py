@@ -14,13 +14,13 @@ from hemma.forecasting.outlook import hourly_means
 from hemma.forecasting.shape import ShapeForecast
 from hemma.methods import METHODS, learned, learners
 from hemma.methods.cloning import CLONING
+from hemma.methods.measured import play
 from hemma.report.methods import grouped, in_order, meaning_of, plain
 from hemma.results.results import load_results
 from hemma.results.store import Store
 from hemma.stages.case import make_case
 from hemma.stages.causal import causal_demonstration
 from hemma.stages.demonstrate import Expert
-from hemma.stages.evaluate import play
 from hemma.stages.identify import identify
 from hemma.stages.observer import HomeObserver
 from hemma.stages.train import train_job

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta, timezone
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from hemma.errors import HemmaError
 
@@ -22,6 +22,9 @@ SHORTEST_SEASON = 14 * 86400
 DAY = 86400
 THURSDAY = 3
 """Day of the week of 1 January 1970, Monday being 0."""
+
+Series = Float[np.ndarray, "slots"]
+"""A value for every slot of a clock."""
 
 
 @dataclass(frozen=True)
@@ -207,6 +210,18 @@ def wall_clock(
 ) -> Int[np.ndarray, "rows"]:
     """Moments [s since 1970-01-01T00:00:00Z] on wall clocks ``offset`` [h] ahead of UTC."""
     return seconds + np.round(offset * 3600).astype(np.int64)
+
+
+def runs(mask: Bool[np.ndarray, "slots"]) -> list[tuple[int, int]]:
+    """Start (included) and stop (excluded) of each run of true values."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
+    return [(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
+
+
+def duration(hours: float) -> str:
+    """A duration for people: ``14 hours``, ``45 minutes``."""
+    number, unit = (hours, "hour") if hours >= 1 else (60 * hours, "minute")
+    return f"{number:.4g} {unit}{'' if number == 1 else 's'}"
 
 
 def iso_text(seconds: int, offset: float) -> str:

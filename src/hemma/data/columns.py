@@ -3,15 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float
-
-from hemma.data.clock import Clock
+from hemma.data.clock import Clock, Series
 
 REQUIRED = ("pv_kw", "load_kw", "outdoor_c", "buy_per_kwh")
 OPTIONAL = ("sell_per_kwh", "indoor_c", "hvac_kw")
-
-Series = Float[np.ndarray, "slots"]
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Int
+from jaxtyping import Int
 
-from hemma.data.clock import Clock
+from hemma.data.clock import Clock, duration, runs
 from hemma.data.columns import Columns, Series
 from hemma.errors import HemmaError
 
@@ -91,18 +91,6 @@ def _without_holes(name: str, column: Series) -> Series:
         return column[_latest(column)]
     slots, known = np.arange(len(column)), np.isfinite(column)
     return np.interp(slots, slots[known], column[known])
-
-
-def runs(mask: Bool[np.ndarray, "slots"]) -> list[tuple[int, int]]:
-    """Start (included) and stop (excluded) of each run of true values."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
-    return [(int(start), int(stop)) for start, stop in edges.reshape(-1, 2)]
-
-
-def duration(hours: float) -> str:
-    """A duration for people: ``14 hours``, ``45 minutes``."""
-    number, unit = (hours, "hour") if hours >= 1 else (60 * hours, "minute")
-    return f"{number:.4g} {unit}{'' if number == 1 else 's'}"
 
 
 def _holes(series: Mapping[str, Series]) -> list[Hole]:

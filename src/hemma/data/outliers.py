@@ -5,9 +5,7 @@ import math
 import numpy as np
 from jaxtyping import Bool, Float
 
-from hemma.data.clock import Clock
-from hemma.data.columns import Series
-from hemma.data.gaps import duration, runs
+from hemma.data.clock import Clock, Series, duration, runs
 
 NO_HOME = 200.0
 """No home generates or uses more than this [kW]."""

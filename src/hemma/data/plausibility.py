@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from hemma.data.clock import duration
 from hemma.data.columns import Columns, Series
-from hemma.data.gaps import duration
 from hemma.data.outliers import absurd_cells, believable, stuck_cells, unusual_cells
 from hemma.data.traces import Traces
 from hemma.errors import HemmaError

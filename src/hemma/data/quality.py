@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hemma.data.gaps import duration
+from hemma.data.clock import duration
 from hemma.data.traces import Traces
 from hemma.types import Array
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hemma.data.clock import Clock, require_whole_days
+from hemma.data.clock import Clock, duration, require_whole_days, runs
 from hemma.data.columns import OPTIONAL, REQUIRED, Columns, Series
-from hemma.data.gaps import duration, fill_gaps, runs
+from hemma.data.gaps import fill_gaps
 from hemma.data.plausibility import oddities, require_plausible
 from hemma.data.tariff import require_ratio
 from hemma.data.traces import Traces

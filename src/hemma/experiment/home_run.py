@@ -9,7 +9,7 @@ from typing import Any
 from hemma.methods import AIRL, HA_1, controls, learned
 from hemma.methods.bill import AbstractBillLearner
 from hemma.methods.imitation import AbstractImitator
-from hemma.methods.measured import known_in_test, measured, runnable
+from hemma.methods.measured import known_in_test, measured, play, runnable
 from hemma.methods.method import AbstractLearner
 from hemma.results.ledger import Ledger
 from hemma.results.records import DemonstrationRuns, MethodRuns
@@ -18,7 +18,7 @@ from hemma.results.store import Store
 from hemma.results.summary import method_runs
 from hemma.stages.case import Case, empty_results
 from hemma.stages.demonstrate import Expert
-from hemma.stages.evaluate import Evaluator, plain_optimum, play
+from hemma.stages.evaluate import Evaluator, plain_optimum
 from hemma.stages.identify import identify
 from hemma.stages.train import Trained, TrainingJob, train_all
 from hemma.studies.data_efficiency.lengths import USUAL, OtherLength, other_lengths

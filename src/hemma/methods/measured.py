@@ -6,7 +6,7 @@ from functools import partial
 
 import jax
 
-from hemma.evaluation import evaluate
+from hemma.evaluation import evaluate, evaluate_stacked
 from hemma.home import AbstractController
 from hemma.methods.hindsight import DNLP
 from hemma.methods.method import AbstractControl, Known
@@ -14,9 +14,13 @@ from hemma.methods.planners import AbstractPlanner
 from hemma.optimisation.nonlinear_programme import casadi_is_installed
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.records import Run
+from hemma.rl.policies.scaling import NOTHING
+from hemma.stages.case import Case
 from hemma.stages.demonstrate import Expert
 from hemma.stages.evaluate import Evaluator, Played
 from hemma.stages.folds import outlook_of
+from hemma.stages.observer import informed
+from hemma.stages.train import Trained, TrainingJob
 
 STAGE = "baselines"
 
@@ -77,6 +81,17 @@ def _evaluated(evaluator: Evaluator, act: _Act, seconds_to_fit: float | None) ->
         return [Played(outcome, seconds_to_train=seconds_to_fit)]
 
     return evaluator.evaluated(act.label, act.mark, play)
+
+
+def play(case: Case, job: TrainingJob, trained: Trained) -> list[Played]:
+    """One outcome a run of the job."""
+    keys = jax.random.split(jax.random.key(0), job.runs)
+    context = NOTHING if job.observer is None else job.observer.in_test()
+    outcomes = evaluate_stacked(case.home, case.test, informed(trained.controllers, context), keys)
+    return [
+        Played(outcome, int(seed), trained.seconds, curve)
+        for outcome, seed, curve in zip(outcomes, job.task.seed, trained.curves, strict=True)
+    ]
 
 
 def _mark(method: AbstractControl, known: Known) -> str:

@@ -3,8 +3,11 @@
 import time
 from dataclasses import dataclass
 
+import jax
 import numpy as np
 
+from hemma.control.rolling import RollingPlanner
+from hemma.evaluation import evaluate
 from hemma.forecasting.combined import MeanForecast, RefittedForecast
 from hemma.forecasting.outlook import Forecaster, Outlook, hourly_means, yesterday
 from hemma.forecasting.ridge import fitted, needed_past
@@ -13,7 +16,7 @@ from hemma.results.fingerprint import code, fingerprint
 from hemma.results.store import Store
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Expert
-from hemma.stages.folds import outlook_of, planned, training_folds
+from hemma.stages.folds import outlook_of, training_folds
 
 STAGE = "default"
 
@@ -102,5 +105,7 @@ def preferred(regrets: dict[str, float], margin: float) -> str:
 
 
 def _regret(expert: Expert, fold: Outlook, forecaster: Forecaster, problem: OptimumProblem) -> float:
-    outcome = planned(expert, fold, forecaster)
+    """What the rolling planner loses in a fold, through the identified network, with this forecast."""
+    planner = RollingPlanner(expert.planning_home, forecaster(fold))
+    outcome = evaluate(expert.case.home, fold.period, planner, jax.random.key(0))
     return float(np.sum(outcome.cost)) - problem.solve(outcome.total_deviation).cost

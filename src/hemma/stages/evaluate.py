@@ -4,18 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import jax
-
-from hemma.evaluation import EqualComfort, Outcome, evaluate_stacked, measure
+from hemma.evaluation import EqualComfort, Outcome, measure
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.results.fingerprint import code, fingerprint
 from hemma.results.records import OptimumRecord, Run
 from hemma.results.schedules import write_exogenous, write_schedule
 from hemma.results.store import Store
-from hemma.rl.policies.scaling import NOTHING
 from hemma.stages.case import Case
-from hemma.stages.observer import informed
-from hemma.stages.train import Trained, TrainingJob
 
 STAGE = "evaluate"
 CODE = code("evaluation", "forecasting", "optimisation", "control")
@@ -67,17 +62,6 @@ class Evaluator:
         reference = at_equal_comfort(self.problem, played.outcome.total_deviation)
         metrics = measure(played.outcome, reference, played.seconds_to_train)
         return Run(**metrics.model_dump(), seed=played.seed, schedule=schedule, curve=played.curve)
-
-
-def play(case: Case, job: TrainingJob, trained: Trained) -> list[Played]:
-    """One outcome a run of the job."""
-    keys = jax.random.split(jax.random.key(0), job.runs)
-    context = NOTHING if job.observer is None else job.observer.in_test()
-    outcomes = evaluate_stacked(case.home, case.test, informed(trained.controllers, context), keys)
-    return [
-        Played(outcome, int(seed), trained.seconds, curve)
-        for outcome, seed, curve in zip(outcomes, job.task.seed, trained.curves, strict=True)
-    ]
 
 
 def at_equal_comfort(problem: OptimumProblem, deviation: float) -> EqualComfort:

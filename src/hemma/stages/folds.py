@@ -3,14 +3,10 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
-import jax
 import numpy as np
 
-from hemma.control.rolling import RollingPlanner
-from hemma.evaluation import Outcome, evaluate
-from hemma.forecasting.outlook import DAY, Forecaster, Outlook
+from hemma.forecasting.outlook import DAY, Outlook
 from hemma.stages.case import Case
-from hemma.stages.demonstrate import Expert
 
 
 def outlook_of(case: Case) -> Outlook:
@@ -31,9 +27,3 @@ def training_folds(case: Case) -> Sequence[Outlook]:
         Outlook(training.window(0, start), training.window(start, stop), slot_length, horizon)
         for start, stop in pairwise(slots)
     ]
-
-
-def planned(expert: Expert, fold: Outlook, forecaster: Forecaster) -> Outcome:
-    """What the rolling planner does in a fold, through the identified network, with this forecast."""
-    planner = RollingPlanner(expert.planning_home, forecaster(fold))
-    return evaluate(expert.case.home, fold.period, planner, jax.random.key(0))

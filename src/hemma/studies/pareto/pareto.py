@@ -7,10 +7,11 @@ from functools import partial
 import numpy as np
 
 from hemma.methods.bill import Sweep
+from hemma.methods.measured import play
 from hemma.results.findings import ParetoPoint
 from hemma.results.records import Run
 from hemma.results.summary import method_runs
-from hemma.stages.evaluate import Evaluator, play
+from hemma.stages.evaluate import Evaluator
 from hemma.stages.train import Trained
 from hemma.studies.pareto.bands import Bands
 
