@@ -121,7 +121,7 @@ def other_clock(draw, table):
         if kind == 0:
             row[0] = row[0][:-6]
         elif kind == 1:
-            row[0] = str(np.datetime64("2021-06-01", "s") + k * minutes * 60) + "+00:00"
+            row[0] = str(np.datetime64("2021-06-01", "s") + np.timedelta64(60 * k * minutes, "s")) + "+00:00"
         elif kind == 2 and k % int(minutes) == 0:
             row[0] = row[0][:-6] + "-05:00"
         elif kind == 3 and k > 60:
