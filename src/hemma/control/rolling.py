@@ -46,12 +46,12 @@ class RollingPlanner(AbstractController):
         slot = int(observation.slot)
         rows, horizon = self._shape(slot)
         planned = min(horizon, rows - slot)
-        row = jax.tree.map(lambda x: np.asarray(x)[slot], self.forecasts)
         with jax.enable_x64(True):
+            row = _row(self.forecasts, jnp.asarray(slot))
             thermal = self.home.thermal_model.initial(jnp.asarray(observation.indoor_temperature, float))
         response = _first(affine_response(self.home, row, thermal), planned)
-        believed, window = in_numpy((self.home, row.window(0, planned)))
-        e, h = _plan(believed, window, response, float(observation.battery_energy))
+        believed, ahead = in_numpy((self.home, row))
+        e, h = _plan(believed, ahead.window(0, planned), response, float(observation.battery_energy))
         return Action(jnp.asarray(e), jnp.asarray(h)), memory
 
     def _shape(self, slot: int) -> tuple[int, int]:
@@ -91,3 +91,8 @@ def _plan(home: Home, window: Exogenous, response: AffineResponse, energy: float
 def _first(response: AffineResponse, slots: int) -> AffineResponse:
     """The first ``slots`` slots alone. All are linearised at full length, so that one compilation does."""
     return AffineResponse(response.free[:slots], response.carry[:slots], response.gain[:slots])
+
+
+@jax.jit
+def _row(forecasts: Exogenous, slot: Array) -> Exogenous:
+    return jax.tree.map(lambda x: jnp.asarray(x, float)[slot], forecasts)

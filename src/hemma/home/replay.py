@@ -101,12 +101,12 @@ def _stepwise(
 ) -> Trajectory:
     """The loop in Python: only the home is compiled."""
     memory, passed = controller.start(), []
+    observation, key = _observed(state, inputs)
     for _ in range(inputs[0].slots):
-        observation, key = _observed(state, inputs)
         action, memory = controller(observation, memory, key)
-        step = _stepped(home, state, inputs, action)
+        step, following = _advanced(home, state, inputs, action)
         passed.append((observation, step))
-        state = step.state
+        state, (observation, key) = step.state, following
     observations, steps = jax.tree.map(lambda *slots: np.stack(slots), *passed)
     return Trajectory(observations, steps, memory)
 
@@ -118,6 +118,11 @@ def _observed(state: HomeState, inputs: tuple[Exogenous, Array, Array]) -> tuple
 
 
 @eqx.filter_jit
-def _stepped(home: Home, state: HomeState, inputs: tuple[Exogenous, Array, Array], action: Action) -> Step:
+def _advanced(
+    home: Home, state: HomeState, inputs: tuple[Exogenous, Array, Array], action: Action
+) -> tuple[Step, tuple[Observation, Array]]:
+    """What a slot does, and what is observed after it; there is nothing after the last one, so it is read
+    again."""
     now, disturbance, _ = jax.tree.map(lambda x: jnp.asarray(x)[state.slot], inputs)
-    return home.step(state, now, action, disturbance)
+    step = home.step(state, now, action, disturbance)
+    return step, _observed(step.state, inputs)
