@@ -4,17 +4,20 @@ import json
 import shutil
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from hemma.control.comfort import ComfortHold
 from hemma.data import load_austin2021
 from hemma.errors import HemmaError
+from hemma.methods.rules import NoBattery
 from hemma.results.reading import json_content
 from hemma.results.store import Store
 from hemma.stages.case import make_case
 from hemma.studies.robustness.faults import faults
 from hemma.studies.robustness.records import FaultRun, load_robustness
 from hemma.studies.robustness.run import measure_faults, run_stored_faults
-from hemma.studies.robustness.scenes import scene
+from hemma.studies.robustness.scenes import late, scene
 from hemma.studies.robustness.stored import stored_job, stored_trial
 from hemma.studies.robustness.trial import FOREIGN, Trial
 from tiny_experiment import Watching, tiny_job
@@ -113,6 +116,22 @@ def test_controllers_of_another_home_act_in_this_one(trial):
     assert costs[0]["Rule"] == costs[1]["Rule"]
     assert costs[0]["MPC hourly means"] != costs[1]["MPC hourly means"]
     assert all(run.regret >= -1e-4 for one in foreign.methods.values() for run in one.runs)
+
+
+def test_a_method_knows_the_period_as_it_is_read_and_no_better(trial, monkeypatch):
+    """Whatever kind of method it is: no list of kinds decides it."""
+    told = []
+
+    def controller(self, known):
+        told.append(np.asarray(known.outlook.period.load))
+        return ComfortHold(known.expert.planning_home)
+
+    monkeypatch.setattr(NoBattery, "controller", controller)
+    case = trial.expert.case
+    now = late(scene(case.home, case.test), np.random.default_rng(0))
+    trial.runs(now)
+    np.testing.assert_array_equal(told[-1], now.readings.exogenous.load)
+    assert not np.array_equal(told[-1], case.test.load)
 
 
 def test_each_home_has_the_controllers_of_the_next_and_the_last_those_of_the_first(trial, monkeypatch):

@@ -65,26 +65,20 @@ class Sensors(AbstractController):
 @eqx.filter_jit
 def _read(readings: Readings, battery: Battery, observation: Observation, earlier: Array) -> Observation:
     """The observation as the sensors give it; ``earlier`` is T_in of the slot before [degC]."""
-    here = jax.tree.map(lambda x: x[observation.slot], (readings.exogenous, _errors(readings)))
-    seen, (temperature_error, energy_error, no_temperature, no_energy) = here
-    is_first = observation.slot == 0
+    r, slot = readings, observation.slot
+    seen, is_first = jax.tree.map(lambda x: x[slot], r.exogenous), slot == 0
     T, E = observation.indoor_temperature, observation.battery_energy
-    temperature = jnp.where((readings.lag > 0) & ~is_first, earlier, T) + temperature_error
-    energy = jnp.clip(E + energy_error, battery.min_energy, battery.max_energy)
+    temperature = jnp.where((r.lag > 0) & ~is_first, earlier, T) + r.temperature_error[slot]
+    energy = jnp.clip(E + r.energy_error[slot], battery.min_energy, battery.max_energy)
+
+    def read(reading: Array, true: Array, is_missing: Array) -> Array:
+        return jnp.where(is_missing, jnp.where(is_first, true, jnp.nan), reading)
+
     quantities = {name: getattr(seen, name) for name in seen.__dataclass_fields__}
     return Observation(
         **quantities,
-        indoor_temperature=jnp.where(no_temperature, jnp.where(is_first, T, jnp.nan), temperature),
-        battery_energy=jnp.where(no_energy, jnp.where(is_first, E, jnp.nan), energy),
+        indoor_temperature=read(temperature, T, r.is_temperature_missing[slot]),
+        battery_energy=read(energy, E, r.is_energy_missing[slot]),
         previous_hvac_power=observation.previous_hvac_power,
-        slot=observation.slot,
-    )
-
-
-def _errors(readings: Readings) -> tuple[Array, ...]:
-    return (
-        readings.temperature_error,
-        readings.energy_error,
-        readings.is_temperature_missing,
-        readings.is_energy_missing,
+        slot=slot,
     )

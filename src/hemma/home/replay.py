@@ -79,7 +79,8 @@ def replay_in_double(
 ) -> Trajectory:
     """``replay`` in float64, whatever the controller was trained in; all numbers come back as NumPy arrays.
 
-    From the home's own initial state unless another is given. Compiled once for each kind of controller.
+    From the home's own initial state, with a fixed key, unless others are given. Compiled once for each kind
+    of controller.
     """
     with jax.enable_x64(True):
         begin = home.reset() if initial is None else initial

@@ -54,7 +54,7 @@ def measured_with_true_model(planner: AbstractPlanner, evaluator: Evaluator, kno
     """A planner through the thermal model of the simulated home: nobody could, it splits regret."""
     label = f"{planner.name} with the true model"
     mark = fingerprint("true model", _mark(planner, known))
-    act = _Act(label, mark, partial(planner.planner, known, evaluator.case.home, known.outlook), True)
+    act = _Act(label, mark, partial(planner.through, evaluator.case.home, known), True)
     return _evaluated(evaluator, act, planner.seconds_to_fit(known))
 
 
@@ -72,7 +72,7 @@ class _Act:
 def _evaluated(evaluator: Evaluator, act: _Act, seconds_to_fit: float | None) -> tuple[Run, ...]:
     case, progress = evaluator.case, evaluator.store.progress
 
-    def play() -> Sequence[Played]:
+    def acted() -> Sequence[Played]:
         if act.is_told:
             progress.started(act.label, 1)
         outcome = evaluate(case.home, case.test, act.controller(), jax.random.key(0))
@@ -80,7 +80,7 @@ def _evaluated(evaluator: Evaluator, act: _Act, seconds_to_fit: float | None) ->
             progress.finished(act.label, f"{case.test.slots} plans")
         return [Played(outcome, seconds_to_train=seconds_to_fit)]
 
-    return evaluator.evaluated(act.label, act.mark, play)
+    return evaluator.evaluated(act.label, act.mark, acted)
 
 
 def play(case: Case, job: TrainingJob, trained: Trained) -> list[Played]:

@@ -83,6 +83,9 @@ class Known:
 class AbstractControl(AbstractMethod):
     """A method that is not trained."""
 
+    is_guarded: bool = True
+    """Whether a safety layer stands behind it under faults."""
+
     @abstractmethod
     def controller(self, known: Known) -> AbstractController:
         """What acts in the period, fitted to the past if to anything."""

@@ -4,7 +4,7 @@ from abc import abstractmethod
 from dataclasses import dataclass
 
 from hemma.control.rolling import RollingPlanner
-from hemma.forecasting.outlook import Forecaster, Outlook, hourly_means, perfect, yesterday
+from hemma.forecasting.outlook import Forecaster, hourly_means, perfect, yesterday
 from hemma.forecasting.published import PublishedPrices
 from hemma.forecasting.ridge import fitted, needed_past
 from hemma.home import Home
@@ -14,9 +14,11 @@ from hemma.methods.method import AbstractControl, Group, Known
 
 @dataclass(frozen=True, kw_only=True)
 class AbstractPlanner(AbstractControl):
-    """Plans battery and HVAC together, does the first slot, measures, plans again."""
+    """Plans battery and HVAC together, does the first slot, measures, plans again; always within the limits,
+    and comfort is a part of the plan."""
 
     group: Group = Group.PLANS
+    is_guarded: bool = False
 
     @abstractmethod
     def forecaster(self, known: Known) -> Forecaster:
@@ -24,11 +26,11 @@ class AbstractPlanner(AbstractControl):
 
     def controller(self, known: Known) -> RollingPlanner:
         """Through the building as it was identified."""
-        return self.planner(known, known.expert.planning_home, known.outlook)
+        return self.through(known.expert.planning_home, known)
 
-    def planner(self, known: Known, planning_home: Home, outlook: Outlook) -> RollingPlanner:
-        """Through any building, in any period."""
-        return RollingPlanner(planning_home, self.forecaster(known)(outlook))
+    def through(self, planning_home: Home, known: Known) -> RollingPlanner:
+        """The same through any building."""
+        return RollingPlanner(planning_home, self.forecaster(known)(known.outlook))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,8 @@ class Store:
     folder: Path
     home: str
     progress: Progress
+    _told: set[str] = field(default_factory=set, repr=False, compare=False)
+    """Products whose making, or that of an earlier run, was already told of."""
 
     def model(self, file: str) -> str:
         """Name, inside the folder, of a product of this home."""
@@ -52,14 +54,15 @@ class Store:
         """The content of a product with the fingerprint ``mark``: that of an earlier run, or made now.
 
         ``make`` writes the product's files and gives its content, as JSON, and their names inside the folder.
-        An earlier one is told of as a ``stage`` that is not run again, by the content's ``message``.
+        An earlier one is told of once as a ``stage`` that is not run again, by the content's ``message``.
         """
         content = self.kept(name, mark)
         if content is None:
             content, files = make()
             self.keep(name, mark, files, content)
-        elif stage is not None:
+        elif stage is not None and name not in self._told:
             self.progress.reused(stage, content.get("message", ""))
+        self._told.add(name)
         return content
 
     def keep(self, product: str, mark: str, files: Iterable[str], content: dict[str, Any]) -> None:

@@ -13,12 +13,10 @@ from hemma.control.safety import Interventions, SafetyLayer
 from hemma.control.sensors import Sensors
 from hemma.evaluation import measure
 from hemma.evaluation.replay import outcome_of
-from hemma.forecasting.outlook import Outlook
 from hemma.home import AbstractController, Trajectory, replay_in_double
 from hemma.methods import controls
 from hemma.methods.measured import runnable
 from hemma.methods.method import AbstractControl, Known
-from hemma.methods.planners import AbstractPlanner
 from hemma.optimisation.optimum import OptimumProblem, optimum_problem
 from hemma.record import Number, Range
 from hemma.results.fingerprint import code, fingerprint
@@ -101,24 +99,20 @@ class Trial:
     def runs(self, now: Scene) -> dict[str, list[FaultRun]]:
         """What the methods that learned in this home do in a scene, be it of another one."""
         problem = optimum_problem(now.home, now.exogenous, disturbances=now.readings.disturbance)
+        known = replace(self._known, outlook=replace(self._known.outlook, period=now.readings.exogenous))
         runs: dict[str, list[FaultRun]] = {}
         for method in self._controls:
-            if isinstance(method, AbstractPlanner):  # plans within the limits: nothing to guard
-                planner = method.planner(self._known, self.expert.planning_home, self._read(now))
-                runs[method.name] = [_evaluated(None, self._run(planner, now), problem)]
-            else:
-                controller = method.controller(self._known)
+            controller = method.controller(known)
+            if method.is_guarded:
                 runs[method.name] = [self._guarded(None, controller, now, problem)]
+            else:
+                runs[method.name] = [_evaluated(None, self._run(controller, now), problem)]
         for method, one in self.trained.items():
             controllers = informed(one.controllers, self._seen(one, now))
             for seed in range(min(one.runs, self._settings.runs)):
                 controller = jax.tree.map(lambda x, seed=seed: x[seed], controllers)
                 runs.setdefault(method, []).append(self._guarded(seed, controller, now, problem))
         return runs
-
-    def _read(self, now: Scene) -> Outlook:
-        """The test period as it is read, and the past."""
-        return replace(outlook_of(self.expert.case), period=now.readings.exogenous)
 
     def _seen(self, one: Trained, now: Scene) -> Context:
         """What a learned method sees besides the paper's state, as it is read."""
@@ -129,6 +123,7 @@ class Trial:
 
     @cached_property
     def _known(self) -> Known:
+        """What methods may go by where nothing is wrong."""
         return Known(self.expert, self.store, outlook_of(self.expert.case))
 
     @cached_property
