@@ -201,7 +201,8 @@ def test_the_policy_moves_to_an_expert_whose_reward_it_never_saw(head):
     assert float(jnp.abs(acted.actions[:, 1] - unseen.actions[:, 1]).mean()) < 0.15
 
 
-@pytest.mark.parametrize("head", [ShapedReward, pytest.param(ImitationScore, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("head", [ShapedReward, ImitationScore])
 def test_a_run_is_the_same_alone_and_among_others(head, monkeypatch):
     """Of AIRL and of GAIL, to the bit."""
     assert_alone_as_among_others(task, dataclasses.replace(LEARNER, head=head), monkeypatch)

@@ -160,5 +160,6 @@ def test_settings_without_meaning_are_refused(change, message):
         dataclasses.replace(SMALL, **change)
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_alone_and_among_others(monkeypatch):
     assert_alone_as_among_others(partial(ruled_task, price_rule), LEARNER, monkeypatch)

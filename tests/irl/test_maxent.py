@@ -271,5 +271,6 @@ def test_tomorrow_matters_reward_at_night_is_prepared_in_time(imitators):
     assert energy[hour == 21].mean() > energy[hour == 15].mean() + 1.0
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_alone_and_among_others(monkeypatch):
     assert_alone_as_among_others(partial(ruled_task, price_rule), linear_maxent(SMALL, PPO), monkeypatch)

@@ -164,5 +164,6 @@ def test_discounting_world_the_battery_is_filled_at_night_for_the_day():
     assert energy[hour == 5].mean() > energy[hour == 17].mean() + 2.0
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_alone_and_among_others(monkeypatch):
     assert_alone_as_among_others(paid_task, LEARNER, monkeypatch)

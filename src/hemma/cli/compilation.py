@@ -29,10 +29,10 @@ def keep_compiled_code() -> None:
 def _folder() -> Path:
     base = os.environ.get("XDG_CACHE_HOME")
     root = Path(base) if base and Path(base).is_absolute() else Path.home() / ".cache"
-    return root / "hemma" / f"compiled-{_processor()}"
+    return root / "hemma" / f"compiled-{processor()}"
 
 
-def _processor() -> str:
+def processor() -> str:
     """A short name for what the processor can do, and for the threads that code is compiled for."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
