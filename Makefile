@@ -10,7 +10,7 @@ reproduce: $(VENV)/installed
 	$(BIN)/hemma reproduce $(ARGS)
 
 test: $(VENV)/developing lint
-	$(BIN)/pytest -q -n 2 --dist loadgroup -m "not slow"
+	$(BIN)/pytest -q -n 2 -m "not slow"
 
 test-slow: $(VENV)/developing
 	$(BIN)/pytest -q -m slow

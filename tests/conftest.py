@@ -1,10 +1,21 @@
 """What every test sees: the profiles of hypothesis, which process runs it, what was compiled before."""
 
+from pathlib import Path
+
 import jax
 import pytest
 from hypothesis import HealthCheck, settings
+from xdist.scheduler import LoadScopeScheduling
 
 from hemma.cli.compilation import processor
+
+TESTS = Path(__file__).parent
+SHARE_THE_EXPERIMENT = {
+    file.relative_to(TESTS.parent).as_posix()
+    for file in (TESTS / "experiment").glob("test_*.py")
+    if "(finished" in file.read_text(encoding="utf-8")
+}
+"""Files whose tests take the fixture ``finished``."""
 
 settings.register_profile(
     "hemma", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
@@ -19,12 +30,13 @@ def pytest_configure(config):
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    """One process runs all tests that share the tiny experiment, and every file is run by one process.
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Every file is run by one process, and all files that share the tiny experiment by the same."""
+    return _ByFile(config, log)
 
-    First of all hooks: xdist's own reads the marks.
-    """
-    for item in items:
-        group = "finished" if "finished" in item.fixturenames else item.nodeid.split("::")[0]
-        item.add_marker(pytest.mark.xdist_group(group))
+
+class _ByFile(LoadScopeScheduling):
+    def _split_scope(self, nodeid):
+        file = nodeid.split("::")[0]
+        return "experiment" if file in SHARE_THE_EXPERIMENT else file
