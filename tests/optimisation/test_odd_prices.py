@@ -5,6 +5,8 @@ import dataclasses
 import jax
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from test_optimum import TwoNodes, dense, traces
 
 from hemma.control.rolling import RollingPlanner
@@ -12,6 +14,7 @@ from hemma.home import Battery, Home, Hvac, benchmark_home, replay_in_double
 from hemma.optimisation.battery import schedule_battery
 from hemma.optimisation.exact.convex import Convex
 from hemma.optimisation.exact.programme import EXACT
+from hemma.optimisation.exact.slot_costs import Slot, View
 from hemma.optimisation.optimum import optimum_problem
 from hemma.types import Exogenous
 
@@ -27,6 +30,7 @@ def priced(exogenous: Exogenous, kind: str) -> Exogenous:
         "negative": (-u, -0.9 * u),
         "negative, flat": (-0.1 * flat, -0.1 * flat),
         "negative, sold dearer still": (-u, -1.2 * u),
+        "negative, flat, sold dearer still": (-0.1 * flat, -0.12 * flat),
         "some negative": (np.where(odd, -u, u), np.where(odd, -0.9 * u, 0.9 * u)),
         "some negative, fees": (np.where(odd, -u, u) + 0.02, np.where(odd, -u, u) - 0.02),
         "some sold dearer": (u, np.where(odd, 1.4, 0.8) * u),
@@ -37,11 +41,11 @@ def priced(exogenous: Exogenous, kind: str) -> Exogenous:
 
 PROVEN = (
     "flat, sold dearer", "sold dearer", "fixed feed-in", "negative", "negative, flat", "some negative",
-    "some negative, fees", "few sold dearer",
+    "some negative, fees", "few sold dearer", "some sold dearer", "negative, flat, sold dearer still",
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", [*PROVEN, "some sold dearer"])
+@pytest.mark.parametrize("kind", PROVEN)
 @pytest.mark.parametrize("heats", [False, True])
 def test_a_short_period_costs_what_scipy_finds_with_binaries_everywhere(kind, heats):
     home = Home(hvac=Hvac(heats=heats), battery=Battery(charging_efficiency=0.9))
@@ -57,9 +61,29 @@ def test_a_short_period_costs_what_scipy_finds_with_binaries_everywhere(kind, he
     assert without.cost == pytest.approx(dense(idle, exogenous, problem.least_deviation, True), abs=1e-5)
 
 
-@pytest.mark.parametrize("kind", ["flat, sold dearer", "negative", "some negative, fees"])
-def test_a_month_is_proven(kind):
-    found = optimum_problem(Home(), priced(traces(744, 1), kind)).solve()
+@pytest.mark.parametrize("seed", range(4))
+def test_prices_of_no_kind_cost_what_scipy_finds(seed):
+    """Spikes of both signs, a selling price that is now dearer and now cheaper."""
+    random, exogenous = np.random.default_rng(seed), traces(36, seed, 33.0)
+    spikes = np.where(random.uniform(size=36) < 0.1, random.choice([-30, 30], 36), 1)
+    buy = exogenous.buying_price * spikes + random.normal(0, 0.1, 36)
+    sell = buy * random.uniform(0.7, 1.4) + random.choice([0.0, 0.05, -0.05])
+    exogenous = dataclasses.replace(exogenous, buying_price=buy, selling_price=sell)
+    problem = optimum_problem(Home(), exogenous)
+    found = problem.solve(problem.least_deviation + seed, solver=dataclasses.replace(EXACT, most_branched=0))
+    expected = dense(Home(), exogenous, problem.least_deviation + seed, True)
+    assert found.cost == pytest.approx(expected, rel=1e-6)
+    assert -1e-6 <= (expected - found.bound) / abs(expected) <= 1e-4
+
+
+SLOWLY = ("few sold dearer", "some sold dearer", "negative, flat, sold dearer still")
+MONTHS = ("flat, sold dearer", "fixed feed-in", "negative", "some negative, fees")
+
+
+@pytest.mark.parametrize("kind", [*MONTHS, *(pytest.param(kind, marks=pytest.mark.slow) for kind in SLOWLY)])
+def test_a_month_is_proven_without_branching(kind):
+    problem = optimum_problem(Home(), priced(traces(744, 1), kind))
+    found = problem.solve(solver=dataclasses.replace(EXACT, most_branched=0))
     assert found.gap <= 1e-6
     assert found.bound <= found.cost + 1e-7 * abs(found.cost)  # rounding does not grow over the slots
 
@@ -73,7 +97,57 @@ def test_a_month_of_the_battery_alone_is_proven(kind):
 
 
 def test_what_modes_leave_open_is_left_to_branch_and_bound_where_odd_slots_are_few():
-    assert optimum_problem(Home(), priced(traces(240, 1), "few sold dearer")).solve().gap <= 1e-6
+    problem = optimum_problem(Home(), priced(traces(48, 0), "few sold dearer"))
+    few = dataclasses.replace(EXACT, rounds=1)
+    assert problem.solve(solver=dataclasses.replace(few, most_branched=0)).gap > 1e-6
+    assert problem.solve(solver=few).gap <= 1e-6
+
+
+powers = st.floats(-3.0, 3.0).map(lambda x: round(x, 3))
+
+
+@given(
+    price=st.floats(-0.3, 0.3),
+    spread=st.floats(-0.1, 0.3),
+    demand=powers,
+    hvac=st.floats(0.0, 2.0),
+    points=st.lists(st.tuples(st.floats(0.0, 2.0), powers), max_size=3),
+    is_split=st.booleans(),
+    at=st.tuples(st.floats(0.0, 2.0), powers),
+)
+def test_modes_cost_no_more_than_x1_and_as_much_where_they_shall(
+    price, spread, demand, hvac, points, is_split, at
+):
+    """And wherever h and e are allowed, there is a mode."""
+    u, v = price + spread, price
+    slot = Slot(u, v, demand, 2.0)
+    rows = list(slot.modes(-3.0, 3.0, View(price, hvac, is_split, tuple(points))))
+
+    def cost(row, h, e):
+        _, _, _, s, constant, least, most, low, middle, high = row
+        kink, end = -demand - most, -demand - least
+
+        def paid(e):
+            return low * min(e, kink) + middle * (np.clip(e, kink, end) - kink) + high * max(e - end, 0.0)
+
+        return constant + s * h + paid(e) - paid(0.0)
+
+    def cheapest(h, e):
+        allowed = [
+            row for row in rows if row[0] - 1e-9 <= e <= row[1] + 1e-9 and row[5] - 1e-9 <= h <= row[6] + 1e-9
+        ]
+        return min(cost(row, h, e) for row in allowed)
+
+    def x1(h, e):
+        g = demand + h + e
+        return u * g if g > 0 else v * g
+
+    assert cheapest(*at) <= x1(*at) + 1e-9
+    exact = [at] if u < v else points[-1:]
+    if is_split and not points:
+        exact = [*exact, (hvac, at[1])]
+    for point in exact:
+        assert cheapest(*point) == pytest.approx(x1(*point), abs=1e-9)
 
 
 def test_quarter_hours_are_proven():
@@ -82,7 +156,7 @@ def test_quarter_hours_are_proven():
 
 
 def test_what_is_not_proven_is_said_and_holds():
-    home, exogenous = Home(), priced(traces(10, 6, 33.0), "negative, sold dearer still")
+    home, exogenous = Home(), priced(traces(10, 0, 33.0), "some sold dearer")
     problem = optimum_problem(home, exogenous)
     found = problem.solve(solver=dataclasses.replace(EXACT, rounds=1, most_branched=0))
     expected = dense(home, exogenous, problem.least_deviation, True)

@@ -14,7 +14,7 @@ from jaxtyping import Float, Int
 from hemma.home import Battery, Home
 from hemma.optimisation.exact.convex import Convex
 
-MOST_PAIRS = 256
+MOST_PAIRS = 512
 """Pairs kept; where more would be needed, the best are, and nothing is proved."""
 
 Row = Float[np.ndarray, "modes"]
@@ -26,9 +26,9 @@ class SlotModes:
 
     charges: Row
     """1 where it may charge, 0 where it may discharge; the switch z of ``charge_or_discharge``."""
-    most_charge: Row
-    """[kW]."""
-    most_discharge: Row
+    least_power: Row
+    """Of the battery [kW]."""
+    most_power: Row
     """[kW]."""
     buys: Row
     """1 where the slot buys, 0 where it sells; the switch z of ``power_balance``."""
@@ -45,11 +45,13 @@ class SlotModes:
     kinks: Float[np.ndarray, "modes 2"]
     """Battery powers at which one price ends and the next begins [kW]."""
 
-    def pieces(self, mode: Int[np.ndarray, "pairs"], charging: bool) -> Float[np.ndarray, "pairs 3"]:
-        """How much power has each price [kW], within what may be charged or discharged."""
-        low = np.zeros(len(mode)) if charging else -self.most_discharge[mode]
-        high = self.most_charge[mode] if charging else np.zeros(len(mode))
-        edges = np.clip(self.kinks[mode], low[:, None], high[:, None])
+    def of(self, modes: Int[np.ndarray, "some"]) -> "SlotModes":
+        """Some of them, in this order."""
+        return SlotModes(*(getattr(self, name)[modes] for name in self.__dataclass_fields__))
+
+    def pieces(self, low: Row, high: Row) -> Float[np.ndarray, "modes 3"]:
+        """How much power from ``low`` to ``high`` has each price [kW]."""
+        edges = np.clip(self.kinks, low[:, None], high[:, None])
         return np.diff(np.column_stack([low, edges, high]), axis=1)
 
 
@@ -81,8 +83,8 @@ class BestModes:
 
     bound: float
     """No schedule costs less [currency]; -inf where pairs were lost."""
-    buys: Float[np.ndarray, "slots"]
-    charges: Float[np.ndarray, "slots"]
+    modes: SlotModes
+    """The mode of every slot."""
 
 
 @dataclass(frozen=True)
@@ -106,15 +108,20 @@ def best_modes(
     ranges = np.zeros((count + 1, 2)) if building is None else building.ranges()
     store = Convex.zero(float(battery.max_energy - battery.min_energy))
     indoors = Convex.zero(float(np.ptp(ranges[-1])))
+    k_e, losses = (
+        float(battery.ageing_cost),
+        float(battery.charging_efficiency * battery.discharging_efficiency),
+    )
+    penalty = 2.0 * (max(float(np.max(np.abs(modes.prices))) for modes in slots) + k_e) / losses
     trace, complete = [], True
     for t in reversed(range(count)):
-        modes = slots[t]
-        mode = np.repeat(np.arange(len(modes.buys)), len(store.start))
-        after = np.tile(np.arange(len(store.start)), len(modes.buys))
-        store = _stored(store.of(after), battery, modes, mode, dt)
+        mode = np.repeat(np.arange(len(slots[t].buys)), len(store.start))
+        after = np.tile(np.arange(len(store.start)), len(slots[t].buys))
+        modes = slots[t].of(mode)
+        store = _stored(store.of(after), battery, modes, (dt, penalty))
         indoors = indoors.of(after)
         if building is not None:
-            indoors = _cooled(indoors, building, t, ranges, (modes, mode, dt))
+            indoors = _cooled(indoors, building, t, ranges, (modes, dt))
         pairs = _Pairs(store, indoors, mode, after)
         kept = _undominated(pairs, tolerance)
         complete = complete and len(kept) <= MOST_PAIRS
@@ -124,26 +131,43 @@ def best_modes(
     offset = np.array([energy - float(battery.min_energy)])
     costs = store.at(offset)[:, 0] + indoors.start
     chosen = _followed(trace, int(np.argmin(costs)))
+    bound = float(np.min(costs)) - count * tolerance if complete else -np.inf
     return BestModes(
-        bound=float(np.min(costs)) - count * tolerance if complete else -np.inf,
-        buys=np.array([modes.buys[k] for modes, k in zip(slots, chosen, strict=True)]),
-        charges=np.array([modes.charges[k] for modes, k in zip(slots, chosen, strict=True)]),
+        bound, stacked([modes.of(np.array([k])) for modes, k in zip(slots, chosen, strict=True)])
     )
 
 
-def _stored(ahead: Convex, battery: Battery, modes: SlotModes, mode: np.ndarray, dt: float) -> Convex:
-    """min over e of the cost of e + ageing + A(E'), for every pair and its mode."""
+def stacked(modes: list[SlotModes]) -> SlotModes:
+    """All of them, one after the other."""
+    names = SlotModes.__dataclass_fields__
+    return SlotModes(*(np.concatenate([getattr(one, name) for one in modes]) for name in names))
+
+
+def _stored(ahead: Convex, battery: Battery, modes: SlotModes, scales: tuple[float, float]) -> Convex:
+    """min over e of the cost of e + ageing + A(E'), for every pair and its mode.
+
+    A mode that must charge or discharge has no such e where the battery is too full or too empty: there the
+    missing energy costs a penalty, more than any energy is worth. ``scales``: dt and the penalty.
+    """
+    dt, penalty = scales
     eta_c, eta_d, k_e = (
         float(x) for x in (battery.charging_efficiency, battery.discharging_efficiency, battery.ageing_cost)
     )
-    prices = modes.prices[mode]
-    charged, discharged = modes.pieces(mode, True) * dt, modes.pieces(mode, False) * dt
+    low, high, nothing = modes.least_power, modes.most_power, np.zeros(len(modes.buys))
+    must_charge, must_discharge = np.maximum(low, 0.0), np.minimum(high, 0.0)
+    charged = modes.pieces(must_charge, np.maximum(high, 0.0)) * dt
+    discharged = modes.pieces(np.minimum(low, 0.0), must_discharge) * dt
+    most_charged = modes.pieces(nothing, np.maximum(high, 0.0)) * dt
+    least_discharged = modes.pieces(must_discharge, nothing) * dt
     stored, taken = charged * eta_c, discharged / eta_d
-    slopes = np.concatenate([-(prices + k_e) / eta_c, -(prices - k_e) * eta_d], axis=1)
-    full = ahead.raised(np.sum((prices + k_e) * charged, axis=1) + modes.constant[mode])
+    must_store, must_take = must_charge * dt * eta_c, -must_discharge * dt / eta_d
+    paid, earned = modes.prices + k_e, modes.prices - k_e
+    slopes = np.column_stack([-paid / eta_c, -earned * eta_d, nothing + penalty, nothing - penalty])
+    lengths = np.column_stack([stored, taken, must_store, must_take])
+    fixed = np.sum(paid * most_charged, axis=1) - np.sum(earned * least_discharged, axis=1)
+    full = ahead.raised(fixed + modes.constant + penalty * must_take)
     capacity = float(battery.max_energy - battery.min_energy)
-    lengths = np.concatenate([stored, taken], axis=1)
-    return full.convolved(slopes, lengths, np.sum(stored, axis=1), capacity)
+    return full.convolved(slopes, lengths, np.sum(stored, axis=1) + must_store, capacity)
 
 
 def _cooled(
@@ -151,12 +175,12 @@ def _cooled(
     building: Building,
     t: int,
     ranges: Float[np.ndarray, "posts 2"],
-    now: tuple[SlotModes, Int[np.ndarray, "pairs"], float],
+    now: tuple[SlotModes, float],
 ) -> Convex:
     """min over h of the cost of h + beta X3 + B(x'), as a function of x at the start of slot ``t``."""
-    modes, mode, dt = now
+    modes, dt = now
     a, b = float(building.carry[t]), float(building.gain[t])
-    least, most, cost = modes.least_hvac[mode], modes.most_hvac[mode], modes.hvac_price[mode] * dt
+    least, most, cost = modes.least_hvac, modes.most_hvac, modes.hvac_price * dt
     lowest = ranges[t + 1, 0]
     priced = ahead.bent(building.low[t] - lowest, building.high[t] - lowest, building.price)
     if b == 0:
@@ -170,16 +194,24 @@ def _cooled(
 
 
 def _undominated(pairs: _Pairs, tolerance: float) -> Int[np.ndarray, "kept"]:
-    """Pairs that no other kept one undercuts everywhere, up to the tolerance; the cheapest come first."""
+    """Pairs that the kept ones do not cover, up to the tolerance; the cheapest come first.
+
+    A pair (A, B) is covered where each piece of B lies above a kept B' raised by the most by which its A'
+    exceeds A, and likewise with A and B exchanged.
+    """
     values = [function.at(function.kinks()) for function in (pairs.store, pairs.building)]
-    over = np.sum([np.min(value[:, None] - value[None, :], axis=2) for value in values], axis=0)
-    dominates = (over >= -tolerance).T
-    kept: list[int] = []
-    alive = np.ones(len(dominates), bool)
-    for pair in np.argsort(sum(np.mean(value, axis=1) for value in values), kind="stable"):
-        if alive[pair]:
-            kept.append(int(pair))
-            alive &= ~dominates[pair]
+    order = np.argsort(sum(np.mean(value, axis=1) for value in values), kind="stable")
+    values = [value[order] for value in values]
+    covered = [np.zeros((len(order), max(value.shape[1] - 1, 1)), bool) for value in values]
+    kept, left = [], np.arange(len(order))
+    while len(left):
+        kept.append(int(order[left[0]]))
+        over = [value[left[0]] - value[left[1:]] for value in values]
+        left = left[1:]
+        for one, other, found in ((over[0], over[1], covered[0]), (over[1], over[0], covered[1])):
+            below = one + np.max(other, axis=1, keepdims=True) <= tolerance
+            found[left] |= below[:, :-1] & below[:, 1:] if below.shape[1] > 1 else below
+        left = left[~(covered[0][left].all(axis=1) | covered[1][left].all(axis=1))]
     return np.array(kept)
 
 

@@ -8,17 +8,29 @@ the duals of a linear programme; see ``docs/expert.md``.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hemma.optimisation.exact.constraints import idling_pays
 from hemma.optimisation.exact.modes import BestModes, Building, SlotModes, best_modes
+from hemma.optimisation.exact.own_schedule import OwnSchedule, own_schedule
 from hemma.optimisation.exact.planning import Plan, PlanningProblem, WrittenProblem, written
 from hemma.optimisation.exact.programme import EXACT, Solution, SolverSettings
+from hemma.optimisation.exact.slot_costs import View, below_cost, net_demand, slot_modes
 
 FORGIVEN = 0.1
 """Share of the allowed gap that the dynamic programme may use up."""
 ENOUGH = 0.5
 """Share of the allowed gap at which the search stops."""
+UNSEEN = 0.1
+"""Share of the gap that may hide in slots which are not looked at more closely."""
+SLOW = 0.7
+"""Part of the gap that better duals alone may leave before more is looked at more closely."""
+AT_ONCE = 60
+"""Slots that are looked at more closely in one round."""
+STEEPER = 8.0
+"""By how much the price of comfort is raised where it is too low and no limit is known."""
+WITHIN = 1e-6
+"""How near to the budget the modes' own schedule has to come [degC]."""
 
 
 @dataclass(frozen=True)
@@ -60,23 +72,95 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
     relaxed = whole.programme.relaxed().solve(settings)
     duals, bound = _duals(whole, relaxed), relaxed.bound
     tolerance = FORGIVEN * settings.relative_gap * abs(relaxed.objective) / problem.exogenous.slots
+    views, comfort = _first_views(problem, duals), _ComfortPrice.first(problem, duals)
     best: Plan | None = None
-    idle = 0  # rounds since the last that found something: without and with splits
-    for count in range(settings.rounds):
-        modes = _modes(problem, duals, tolerance, splits=count % 2 == 0)
-        before = bound, None if best is None else best.objective
-        bound = max(bound, modes.bound - duals.comfort * (problem.budget or 0.0))
-        inside = _in_modes(problem, modes)
+    gap = np.inf
+    for _ in range(settings.rounds):
+        modes = _modes(problem, views, comfort.price, tolerance)
+        bound = max(bound, modes.bound - comfort.price * (problem.budget or 0.0))
+        inside = _in_modes(problem, modes.modes)
         found = inside.programme.solve(settings)
         if best is None or found.objective < best.objective:
             best = inside.read(found)
         best = replace(best, bound=bound)
-        idle = idle + 1 if before == (bound, best.objective) else 0
-        if _proves(settings, best) or idle == 2:
+        before, gap = gap, max(best.objective - bound, 0.0)
+        if _proves(settings, best) or np.isinf(modes.bound):  # finer views lose yet more pairs
             break
         duals = _duals(inside, found)
+        own = own_schedule(problem, modes.modes, comfort.price)
+        hidden = _hidden(below_cost(problem, modes.modes, own.hvac, own.battery), gap)
+        if len(hidden) <= AT_ONCE or gap > SLOW * before:
+            views = _closer(problem, views, own, hidden[:AT_ONCE])
+        views = _priced(views, duals)
+        if problem.budget is not None:
+            comfort = comfort.nearer(own.deviation - problem.budget, duals.comfort)
     assert best is not None
     return best
+
+
+@dataclass(frozen=True)
+class _ComfortPrice:
+    """beta on X3 [currency/degC], which has to make the modes' own schedule keep to the budget."""
+
+    price: float
+    low: float = 0.0
+    """Too low."""
+    high: float = np.inf
+    """Too high."""
+
+    @classmethod
+    def first(cls, problem: PlanningProblem, duals: _Duals) -> "_ComfortPrice":
+        """The dual; where no deviation is allowed, more does no harm."""
+        strict = problem.budget is not None and problem.budget <= WITHIN
+        return cls(duals.comfort * STEEPER if strict else duals.comfort)
+
+    def nearer(self, beyond: float, expected: float) -> "_ComfortPrice":
+        """After a schedule that is ``beyond`` the budget [degC]; ``expected`` is tried if it can be."""
+        low = max(self.low, self.price) if beyond > WITHIN else self.low
+        high = min(self.high, self.price) if beyond < -WITHIN else self.high
+        if (low, high) == (self.low, self.high):
+            return self
+        middle = STEEPER * max(low, expected) if np.isinf(high) else 0.5 * (low + high)
+        return _ComfortPrice(expected if low < expected < high else middle, low, high)
+
+
+def _first_views(problem: PlanningProblem, duals: _Duals) -> list[View]:
+    """Where burning energy pays, X1 is taken as it is at the plan's h."""
+    x = problem.exogenous
+    split = idling_pays(problem.home.battery, x) & (np.asarray(x.buying_price) < 0)
+    split &= problem.energy is not None and problem.response is not None
+    return _priced([View(0.0, 0.0, bool(is_split)) for is_split in split], duals)
+
+
+def _priced(views: list[View], duals: _Duals) -> list[View]:
+    """The same with these duals and the plan they come from."""
+    return [
+        replace(view, price=float(s), hvac=float(h))
+        for view, s, h in zip(views, duals.energy, duals.plan.hvac_power, strict=True)
+    ]
+
+
+def _hidden(missing: Float[np.ndarray, "slots"], gap: float) -> Int[np.ndarray, "some"]:
+    """The slots whose ``missing`` cost [currency] matters for the gap; the worst come first."""
+    hidden = np.flatnonzero(missing > UNSEEN * gap / len(missing))
+    return hidden[np.argsort(-missing[hidden], kind="stable")]
+
+
+def _closer(
+    problem: PlanningProblem, views: list[View], own: OwnSchedule, slots: Int[np.ndarray, "some"]
+) -> list[View]:
+    """The same, but exact also where the modes' own schedule is in some slots."""
+    demand, _ = net_demand(problem)
+    found = list(views)
+    for t in slots:
+        h, e = float(own.hvac[t]), float(own.battery[t])
+        across = -float(demand[t]) - e - h  # to where g = 0
+        tried = [h]
+        while (tried[-1], e) in views[t].points:  # exact there in smaller cells
+            across *= 0.25
+            tried = [h + across * step for step in (1.0, 2.0, 3.0)]
+        found[t] = replace(views[t], points=views[t].points + tuple((h, e) for h in tried))
+    return found
 
 
 def _proves(settings: SolverSettings, plan: Plan) -> bool:
@@ -92,7 +176,7 @@ def _duals(within: WrittenProblem, found: Solution) -> _Duals:
     return _Duals(energy, comfort, within.read(found))
 
 
-def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float, splits: bool) -> BestModes:
+def _modes(problem: PlanningProblem, views: list[View], comfort: float, tolerance: float) -> BestModes:
     home, response = problem.home, problem.response
     building = None
     if response is not None:
@@ -103,82 +187,13 @@ def _modes(problem: PlanningProblem, duals: _Duals, tolerance: float, splits: bo
             low=float(home.comfort.low) - free,
             high=float(home.comfort.high) - free,
             max_power=float(home.hvac.max_power),
-            price=duals.comfort,
+            price=comfort,
         )
     energy = float(home.battery.min_energy) if problem.energy is None else problem.energy
-    return best_modes(home, energy, _slot_modes(problem, duals, splits), building, tolerance)
+    return best_modes(home, energy, slot_modes(problem, views), building, tolerance)
 
 
-def _slot_modes(problem: PlanningProblem, duals: _Duals, splits: bool) -> list[SlotModes]:
-    """The modes of every slot, each with its cost as a sum of what battery and HVAC cost by themselves."""
-    home, x = problem.home, problem.exogenous
-    usable = problem.energy is not None
-    C, D = float(home.battery.max_charging_power) * usable, float(home.battery.max_discharging_power) * usable
-    demand = np.asarray(x.load, float) - np.asarray(x.pv_generation, float)
-    most = float(home.hvac.max_power)
-    expected = duals.plan.hvac_power
-    if problem.response is None:
-        demand, expected, most = demand + expected, np.zeros(x.slots), 0.0
-    burns = idling_pays(home.battery, x) & usable
-    found = []
-    for t in range(x.slots):
-        slot = _Slot(float(x.buying_price[t]), float(x.selling_price[t]), float(demand[t]), most)
-        powers = [(1.0, C, 0.0), (0.0, 0.0, D)] if burns[t] else [(1.0, C, D)]
-        rows = []
-        for power in powers:
-            if slot.v > slot.u:
-                costs = slot.concave(*power[1:])
-            elif splits and slot.u < 0 and burns[t]:
-                costs = slot.split(float(np.clip(expected[t], 0.0, most)), *power[1:])
-            else:
-                costs = [slot.convex(0.0, most, float(np.clip(duals.energy[t], slot.v, slot.u)))]
-            rows += [power + cost for cost in costs]
-        table = np.array(rows)
-        table[:, 5] *= float(home.slot_length)
-        found.append(SlotModes(*table[:, :8].T, prices=table[:, 8:], kinks=-demand[t] - table[:, [7, 6]]))
-    return found
-
-
-@dataclass(frozen=True)
-class _Slot:
-    """X1 / dt as the least of several costs, each a sum of one of h and one of e and never above X1.
-
-    A cost is (buys, price of h, constant, least and most h, three prices of e).
-    """
-
-    u: float
-    """u+ [currency/kWh]."""
-    v: float
-    """u- [currency/kWh]."""
-    demand: float
-    """l - p, and h where it is known [kW]."""
-    most: float
-    """h^max [kW]."""
-
-    def concave(self, charge: float, discharge: float) -> list[tuple[float, ...]]:
-        """u- > u+: one price for all, that of buying or that of selling where it can be."""
-        sides = [(1.0, self.u)] * (self.demand + self.most + charge > 0)
-        sides += [(0.0, self.v)] * (self.demand - discharge < 0)
-        return [(buys, p, p * self.demand, 0.0, self.most, p, p, p) for buys, p in sides]
-
-    def convex(self, low: float, high: float, s: float) -> tuple[float, ...]:
-        """s h + min over h in [``low``, ``high``] of X1 - s h, for s in [u-, u+]: less than X1 by nothing
-        where g = 0, or h stands at the end that s favours least."""
-        above, below = max(self.demand + low, 0.0), min(self.demand + high, 0.0)
-        middle = s * (self.demand - above - below)
-        return 1.0, s, self.u * above + middle + self.v * below, low, high, self.v, s, self.u
-
-    def split(self, hvac: float, charge: float, discharge: float) -> list[tuple[float, ...]]:
-        """X1 as it is at h = ``hvac``: less of it saves at most u+, more costs at least u-."""
-        expected = self.demand + hvac
-        if expected - discharge >= 0 or hvac >= self.most:
-            return [self.convex(0.0, self.most, self.u)]
-        if expected + charge <= 0 or hvac <= 0:
-            return [self.convex(0.0, self.most, self.v)]
-        return [self.convex(0.0, hvac, self.u), self.convex(hvac, self.most, self.v)]
-
-
-def _in_modes(problem: PlanningProblem, modes: BestModes) -> WrittenProblem:
+def _in_modes(problem: PlanningProblem, modes: SlotModes) -> WrittenProblem:
     """The linear programme with these modes.
 
     A slot that buys has the price u+ for whatever it does, one that sells u-: never less than X1.
