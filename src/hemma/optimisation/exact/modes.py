@@ -9,7 +9,7 @@ proof; a handful of pairs survive.
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from hemma.home import Battery, Home
 from hemma.optimisation.exact.convex import Convex
@@ -199,20 +199,25 @@ def _undominated(pairs: _Pairs, tolerance: float) -> Int[np.ndarray, "kept"]:
     A pair (A, B) is covered where each piece of B lies above a kept B' raised by the most by which its A'
     exceeds A, and likewise with A and B exchanged.
     """
-    values = [function.at(function.kinks()) for function in (pairs.store, pairs.building)]
-    order = np.argsort(sum(np.mean(value, axis=1) for value in values), kind="stable")
-    values = [value[order] for value in values]
-    covered = [np.zeros((len(order), max(value.shape[1] - 1, 1)), bool) for value in values]
-    kept, left = [], np.arange(len(order))
-    while len(left):
-        kept.append(int(order[left[0]]))
-        over = [value[left[0]] - value[left[1:]] for value in values]
-        left = left[1:]
-        for one, other, found in ((over[0], over[1], covered[0]), (over[1], over[0], covered[1])):
-            below = one + np.max(other, axis=1, keepdims=True) <= tolerance
-            found[left] |= below[:, :-1] & below[:, 1:] if below.shape[1] > 1 else below
-        left = left[~(covered[0][left].all(axis=1) | covered[1][left].all(axis=1))]
+    store, building = (function.at(function.kinks()) for function in (pairs.store, pairs.building))
+    order = np.argsort(np.mean(store, axis=1) + np.mean(building, axis=1), kind="stable")
+    store, building = store[order], building[order]
+    in_store, in_building = (np.zeros((len(order), max(x.shape[1] - 1, 1)), bool) for x in (store, building))
+    kept = []
+    while len(order):
+        kept.append(int(order[0]))
+        above, over = store[0] - store[1:], building[0] - building[1:]
+        in_store = in_store[1:] | _whole(above <= tolerance - np.max(over, axis=1, keepdims=True))
+        in_building = in_building[1:] | _whole(over <= tolerance - np.max(above, axis=1, keepdims=True))
+        left = ~(np.all(in_store, axis=1) | np.all(in_building, axis=1))
+        order, store, building = order[1:][left], store[1:][left], building[1:][left]
+        in_store, in_building = in_store[left], in_building[left]
     return np.array(kept)
+
+
+def _whole(below: Bool[np.ndarray, "pairs points"]) -> Bool[np.ndarray, "pairs pieces"]:
+    """Pieces at both ends of which a line is below another is it everywhere."""
+    return below[:, :-1] & below[:, 1:] if below.shape[1] > 1 else below
 
 
 def _followed(trace: list[tuple[np.ndarray, np.ndarray]], pair: int) -> list[int]:
