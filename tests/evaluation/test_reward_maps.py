@@ -10,7 +10,6 @@ from hemma.errors import HemmaError
 from hemma.evaluation.reward_maps import (
     Grid,
     Varied,
-    agreement,
     answers,
     outdoor_and_indoor,
     preferred,
@@ -109,11 +108,6 @@ def test_an_hvac_fraction_of_nothing_ends_at_the_edge_of_comfort():
     found = answers(stacked(blank()), Home(), outdoor_and_indoor(days(), 15.0, grid, Home()), Varied.HVAC)
     ends = np.asarray(found.next_temperature)
     np.testing.assert_allclose(ends[..., ends.shape[-1] // 2], 24.0, atol=1e-3)
-
-
-def test_agreement_by_hand():
-    values = jnp.asarray([[1.0, -1.0, 0.0], [2.0, 1.0, 0.0], [3.0, 1.0, 1.0]])
-    np.testing.assert_allclose(agreement(values), [1.0, 2 / 3, 1 / 3], rtol=1e-6)
 
 
 def test_an_hour_that_no_slot_begins_is_refused():

@@ -128,11 +128,6 @@ def preferred(
     return jax.vmap(lambda place: jnp.take_along_axis(value, place[..., None], axis=-1)[..., 0])(best)
 
 
-def agreement(values: Float[Array, "runs *grid"]) -> Float[Array, "*grid"]:
-    """Share of the runs whose value has the sign that most of them have; a zero has neither."""
-    return jnp.maximum(jnp.mean(values > 0, axis=0), jnp.mean(values < 0, axis=0))
-
-
 def _answer(run: LearnedReward, home: Home, point: Moment, fractions: Float[Array, "actions"]) -> Answers:
     state = HomeState(
         battery_energy=point.battery_energy,
