@@ -70,7 +70,10 @@ def test_quarters_of_an_hour_and_a_horizon_of_a_day_come_near():
 
 @settings(max_examples=5)
 @given(seed=st.integers(0, 100), heats=st.booleans(), negative=st.sampled_from([0.0, 0.2]))
-@pytest.mark.parametrize("forecaster", [yesterday, hourly_means, fitted])
+@pytest.mark.parametrize(
+    "forecaster",
+    [*(pytest.param(slow, marks=pytest.mark.slow) for slow in (yesterday, hourly_means)), fitted],
+)
 def test_no_forecast_beats_perfect_information_and_all_actions_are_feasible(
     forecaster, seed, heats, negative
 ):

@@ -190,6 +190,7 @@ def test_a_product_that_is_broken_missing_or_changed_is_made_again(finished, tmp
         assert made.read_bytes() == original.read_bytes()
 
 
+@pytest.mark.slow
 def test_the_method_sees_its_own_days_and_no_others(finished, tmp_path):
     """Other traces after the demonstrated days: another test and excitation, the same controllers."""
     job = tiny_job(tmp_path)

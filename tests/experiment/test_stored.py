@@ -105,6 +105,7 @@ def moved(trial, home):
     return replace(trial, expert=replace(trial.expert, case=other), store=store)
 
 
+@pytest.mark.slow
 def test_controllers_of_another_home_act_in_this_one(trial):
     """The embedded homes differ in load and PV alone: a rule costs the same, a forecast does not."""
     case, guest = trial.expert.case, moved(trial, 3)
@@ -134,6 +135,7 @@ def test_a_method_knows_the_period_as_it_is_read_and_no_better(trial, monkeypatc
     assert not np.array_equal(told[-1], case.test.load)
 
 
+@pytest.mark.slow
 def test_each_home_has_the_controllers_of_the_next_and_the_last_those_of_the_first(trial, monkeypatch):
     def runs(self, _):
         """One run that says whose it is."""
@@ -153,6 +155,7 @@ def test_each_home_has_the_controllers_of_the_next_and_the_last_those_of_the_fir
     assert (folder / "figures" / "robustness.png").exists()
 
 
+@pytest.mark.slow
 def test_planners_that_look_less_far_are_measured_again(trial):
     case = trial.expert.case
     shorter = replace(case, experiment=replace(case.experiment, forecast_horizon=3.0))

@@ -126,6 +126,7 @@ def test_battery_and_hvac_are_stopped_each_by_itself(trained):
     np.testing.assert_allclose(found, state.best_loss, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_training_is_a_function_of_the_seed(trained):
     first, again, other = (jax.tree.map(lambda x, run=run: x[run], trained.best) for run in range(3))
     for a, b in zip(jax.tree.leaves(first), jax.tree.leaves(again), strict=True):

@@ -42,6 +42,7 @@ def test_a_stored_reward_pays_the_same_bit_for_bit(tmp_path):
         np.testing.assert_array_equal(kept.run(run).scaler(states), again.run(run).scaler(states))
 
 
+@pytest.mark.slow
 def test_members_of_a_committee_are_one_more_axis(tmp_path):
     heads = eqx.filter_vmap(eqx.filter_vmap(lambda key: ShapedReward.random((4,), 0.9, key)))(
         jax.random.split(jax.random.key(0), (2, 3))

@@ -249,11 +249,13 @@ def acted(imitators, run, seed):
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_one_step_an_idle_expert_teaches_rest(imitators):
     """What the HVAC's power is worth, it is worth at once."""
     assert float(acted(imitators, 0, seed=9).actions[:, 1].mean()) < 0.1
 
 
+@pytest.mark.slow
 def test_the_state_matters_an_expert_on_price_teaches_a_reaction_to_price(imitators):
     """On days it never saw; and buying low and selling high is what was found to pay."""
     expert = demonstrate(Home(), traces(4, seed=9), price_rule)
@@ -262,6 +264,7 @@ def test_the_state_matters_an_expert_on_price_teaches_a_reaction_to_price(imitat
     assert float(imitators[1].weights.charge_at_price[1]) < 0
 
 
+@pytest.mark.slow
 def test_tomorrow_matters_reward_at_night_is_prepared_in_time(imitators):
     """No price tells when to charge: the battery is filled before the night and emptied after it."""
     shown = acted(imitators, 2, seed=0)

@@ -62,6 +62,7 @@ def test_it_finds_what_a_known_reward_pays_best():
     assert float(known.teacher.rewards(acted.transitions).mean()) > -0.08
 
 
+@pytest.mark.slow
 def test_neither_scale_nor_seedless_repetition_changes_it():
     """Twice the same task is twice the same policy; a reward of ten times the size is the same reward."""
     short = dataclasses.replace(LEARNER.learning.settings, iterations=25)

@@ -125,6 +125,7 @@ def test_one_step_world_without_a_price_of_comfort_the_hvac_is_off():
     assert float(acted.action.hvac_power.mean()) < 0.1
 
 
+@pytest.mark.slow
 def test_state_matters_world_comfort_at_any_price_is_held_hot_or_cool():
     acted = played(LEARNER, comfort_price=50.0)
     assert float(acted.costs.temperature_deviation[12:].mean()) < 0.05
