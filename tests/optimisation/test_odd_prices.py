@@ -155,6 +155,14 @@ def test_quarter_hours_are_proven():
     assert found.gap <= 1e-6
 
 
+@pytest.mark.parametrize(("buy", "sell"), [(-0.2, -0.3), (-0.3, -0.2), (0.2, 0.3)])
+def test_a_slot_in_which_nothing_can_be_done_has_a_mode(buy, sell):
+    for demand, view in ((0.0, View(0.0, 0.0, True)), (1.0, View(0.0, 0.0, False, ((0.0, 0.0),)))):
+        [(low, high, *cost)] = Slot(buy, sell, demand, 0.0).modes(0.0, 0.0, view)
+        assert (low, high) == (0.0, 0.0)
+        assert cost[2] == pytest.approx(buy * demand)
+
+
 def test_what_is_not_proven_is_said_and_holds():
     home, exogenous = Home(), priced(traces(10, 0, 33.0), "some sold dearer")
     problem = optimum_problem(home, exogenous)

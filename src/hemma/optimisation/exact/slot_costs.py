@@ -87,9 +87,9 @@ class Slot:
         """For e from ``low`` to ``high``: least and most e, and a cost."""
         if self.v > self.u:
             yield from ((low, high, *cost) for cost in self._concave(low, high))
-        elif view.points:
+        elif self.most > 0 and view.points:
             yield from self._cells(low, high, view)
-        elif view.is_split:
+        elif self.most > 0 and view.is_split:
             for s, parts in groupby(self._parts(low, high, view.hvac), key=lambda part: part[2]):
                 ends = [end for part in parts for end in part[:2]]
                 yield low, high, *self._convex(ends[0], ends[-1], s)
@@ -98,7 +98,7 @@ class Slot:
 
     def _concave(self, low: float, high: float) -> Iterator[Cost]:
         """u- > u+: one price for all, that of buying or that of selling where it can be."""
-        sides = [(1.0, self.u)] * (self.demand + self.most + high > 0)
+        sides = [(1.0, self.u)] * (self.demand + self.most + high >= 0)
         sides += [(0.0, self.v)] * (self.demand + low < 0)
         return ((buys, p, p * self.demand, 0.0, self.most, p, p, p) for buys, p in sides)
 
