@@ -9,8 +9,10 @@ import pytest
 from paid_worlds import paid_task, played, two_price_traces
 
 from companions import assert_alone_as_among_others
+from hemma.checkpoint import save_tree
 from hemma.errors import HemmaError
 from hemma.home import Home
+from hemma.rl import training
 from hemma.rl.environment import collect
 from hemma.rl.explicit import (
     ExplicitLearning,
@@ -142,3 +144,10 @@ def test_discounting_world_the_battery_is_filled_at_night_for_the_day():
 
 def test_a_run_is_the_same_alone_and_among_others(monkeypatch):
     assert_alone_as_among_others(paid_task, LEARNER, monkeypatch)
+
+
+@pytest.mark.parametrize("header", [{}, {"chunks": "two"}, {"chunks": -1}])
+def test_a_training_under_way_with_a_damaged_header_is_refused(tmp_path, header):
+    save_tree(tmp_path / "half.safetensors", {"a": np.zeros(1)}, header)
+    with pytest.raises(HemmaError, match="expected a training under way"):
+        training.load(tmp_path / "half.safetensors", paid_task(), LEARNER)

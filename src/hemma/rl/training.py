@@ -127,8 +127,10 @@ def save(path: Path, training: Training, header: dict[str, Any]) -> None:
 
 def load(path: Path, task: Task, algorithm: Algorithm) -> Training:
     """What ``save`` stored for the same task and algorithm; going on gives what an unbroken run gives."""
+    chunks = load_header(path).get("chunks")
+    if not isinstance(chunks, int) or chunks < 0:
+        raise HemmaError(f"{path}: expected a training under way, its header has {chunks!r} chunks")
     like = begin(task, algorithm)
-    chunks = load_header(path)["chunks"]
     curve = jax.tree.map(lambda x: jnp.zeros((x.shape[0], chunks), x.dtype), like.curve)
     return load_tree(path, Training(like.state, curve))
 

@@ -112,7 +112,7 @@ class _ResumableTraining:
     def _earlier(self) -> tuple[Training | None, float]:
         try:
             header = load_header(self.under_way)
-            if header.get("fingerprint") != self.job.mark:
+            if header.get("fingerprint") != self.job.mark or not isinstance(header.get("seconds"), float):
                 return None, 0.0
             training = load(self.under_way, self.job.task, self.job.algorithm)
         except HemmaError:
