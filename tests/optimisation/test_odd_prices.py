@@ -13,6 +13,10 @@ from hemma.control.rolling import RollingPlanner
 from hemma.home import Battery, Home, Hvac, benchmark_home, replay_in_double
 from hemma.optimisation.battery import schedule_battery
 from hemma.optimisation.exact.convex import Convex
+from hemma.optimisation.exact.modes import SlotModes
+from hemma.optimisation.exact.odd_prices import ComfortPrice
+from hemma.optimisation.exact.own_schedule import own_schedule
+from hemma.optimisation.exact.planning import PlanningProblem
 from hemma.optimisation.exact.programme import EXACT
 from hemma.optimisation.exact.slot_costs import Slot, View
 from hemma.optimisation.optimum import optimum_problem
@@ -161,6 +165,31 @@ def test_a_slot_in_which_nothing_can_be_done_has_a_mode(buy, sell):
         [(low, high, *cost)] = Slot(buy, sell, demand, 0.0).modes(0.0, 0.0, view)
         assert (low, high) == (0.0, 0.0)
         assert cost[2] == pytest.approx(buy * demand)
+
+
+@pytest.mark.parametrize(("full", "power"), [(True, 1.0), (False, -1.0)])
+def test_a_mode_that_asks_too_much_of_the_battery_gets_what_there_is(full, power):
+    """Full and told to charge, or empty and told to discharge: as much as it can, instead of no schedule."""
+    home, exogenous = Home(), priced(traces(2, 0), "flat, sold dearer")
+    energy = float(home.battery.max_energy if full else home.battery.min_energy)
+    problem = PlanningProblem(home, exogenous, energy, np.zeros(2))
+    two, nothing = np.ones(2), np.zeros(2)
+    modes = SlotModes(
+        two, power * two, power * two, two, 0.2 * two, nothing, nothing, nothing, np.full((2, 3), 0.2),
+        np.zeros((2, 2)),
+    )  # fmt: skip
+    np.testing.assert_allclose(own_schedule(problem, modes, 0.0).battery, 0.0, atol=1e-9)
+
+
+def test_comfort_that_costs_nothing_in_the_duals_is_given_a_price_where_the_budget_is_broken():
+    free = ComfortPrice(0.0, unit=0.4)
+    assert free.nearer(beyond=-1.0, expected=0.0).price == 0.0
+    dear = free.nearer(beyond=1.0, expected=0.0)
+    assert dear.price == 0.4
+    assert dear.nearer(beyond=1.0, expected=0.0).price == 8 * 0.4
+    assert dear.nearer(beyond=-1.0, expected=0.0).price == 0.2
+    assert dear.nearer(beyond=-1.0, expected=0.3).price == 0.3
+    assert dear.nearer(beyond=0.0, expected=0.3) == dear
 
 
 def test_what_is_not_proven_is_said_and_holds():

@@ -2,8 +2,8 @@
 
 Once the mode of every slot is known, its energy has one price, and then battery and building do not meet: the
 least cost to go is A(E) + B(T) with A and B convex and piecewise linear. Backward in time every such pair is
-extended by every mode, and those that another pair nowhere exceeds are dropped. ``docs/expert.md`` has the
-proof; a handful of pairs survive.
+extended by every mode, and those that other pairs cover are dropped. ``docs/expert.md`` has the proof; a few
+dozen pairs at most survive where prices are not all alike.
 """
 
 from dataclasses import dataclass
@@ -108,17 +108,13 @@ def best_modes(
     ranges = np.zeros((count + 1, 2)) if building is None else building.ranges()
     store = Convex.zero(float(battery.max_energy - battery.min_energy))
     indoors = Convex.zero(float(np.ptp(ranges[-1])))
-    k_e, losses = (
-        float(battery.ageing_cost),
-        float(battery.charging_efficiency * battery.discharging_efficiency),
-    )
-    penalty = 2.0 * (max(float(np.max(np.abs(modes.prices))) for modes in slots) + k_e) / losses
+    scales = dt, penalty(battery, stacked(slots))
     trace, complete = [], True
     for t in reversed(range(count)):
         mode = np.repeat(np.arange(len(slots[t].buys)), len(store.start))
         after = np.tile(np.arange(len(store.start)), len(slots[t].buys))
         modes = slots[t].of(mode)
-        store = _stored(store.of(after), battery, modes, (dt, penalty))
+        store = _stored(store.of(after), battery, modes, scales)
         indoors = indoors.of(after)
         if building is not None:
             indoors = _cooled(indoors, building, t, ranges, (modes, dt))
@@ -143,13 +139,19 @@ def stacked(modes: list[SlotModes]) -> SlotModes:
     return SlotModes(*(np.concatenate([getattr(one, name) for one in modes]) for name in names))
 
 
+def penalty(battery: Battery, modes: SlotModes) -> float:
+    """More than any energy in the battery is worth in these modes [currency/kWh]."""
+    losses = float(battery.charging_efficiency * battery.discharging_efficiency)
+    return 2.0 * (float(np.max(np.abs(modes.prices))) + float(battery.ageing_cost)) / losses
+
+
 def _stored(ahead: Convex, battery: Battery, modes: SlotModes, scales: tuple[float, float]) -> Convex:
     """min over e of the cost of e + ageing + A(E'), for every pair and its mode.
 
     A mode that must charge or discharge has no such e where the battery is too full or too empty: there the
-    missing energy costs a penalty, more than any energy is worth. ``scales``: dt and the penalty.
+    missing energy costs a ``penalty``. ``scales``: dt and this.
     """
-    dt, penalty = scales
+    dt, missing = scales
     eta_c, eta_d, k_e = (
         float(x) for x in (battery.charging_efficiency, battery.discharging_efficiency, battery.ageing_cost)
     )
@@ -162,10 +164,10 @@ def _stored(ahead: Convex, battery: Battery, modes: SlotModes, scales: tuple[flo
     stored, taken = charged * eta_c, discharged / eta_d
     must_store, must_take = must_charge * dt * eta_c, -must_discharge * dt / eta_d
     paid, earned = modes.prices + k_e, modes.prices - k_e
-    slopes = np.column_stack([-paid / eta_c, -earned * eta_d, nothing + penalty, nothing - penalty])
+    slopes = np.column_stack([-paid / eta_c, -earned * eta_d, nothing + missing, nothing - missing])
     lengths = np.column_stack([stored, taken, must_store, must_take])
     fixed = np.sum(paid * most_charged, axis=1) - np.sum(earned * least_discharged, axis=1)
-    full = ahead.raised(fixed + modes.constant + penalty * must_take)
+    full = ahead.raised(fixed + modes.constant + missing * must_take)
     capacity = float(battery.max_energy - battery.min_energy)
     return full.convolved(slopes, lengths, np.sum(stored, axis=1) + must_store, capacity)
 

@@ -72,7 +72,7 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
     relaxed = whole.programme.relaxed().solve(settings)
     duals, bound = _duals(whole, relaxed), relaxed.bound
     tolerance = FORGIVEN * settings.relative_gap * abs(relaxed.objective) / problem.exogenous.slots
-    views, comfort = _first_views(problem, duals), _ComfortPrice.first(problem, duals)
+    views, comfort = _first_views(problem, duals), ComfortPrice.first(problem, duals)
     best: Plan | None = None
     gap = np.inf
     for _ in range(settings.rounds):
@@ -99,29 +99,39 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
 
 
 @dataclass(frozen=True)
-class _ComfortPrice:
+class ComfortPrice:
     """beta on X3 [currency/degC], which has to make the modes' own schedule keep to the budget."""
 
     price: float
+    unit: float
+    """The dearest slot of full HVAC: tried first where nothing is known but that 0 is too low."""
     low: float = 0.0
     """Too low."""
     high: float = np.inf
     """Too high."""
 
     @classmethod
-    def first(cls, problem: PlanningProblem, duals: _Duals) -> "_ComfortPrice":
+    def first(cls, problem: PlanningProblem, duals: _Duals) -> "ComfortPrice":
         """The dual; where no deviation is allowed, more does no harm."""
+        home, x = problem.home, problem.exogenous
+        dearest = float(max(np.max(np.abs(x.buying_price)), np.max(np.abs(x.selling_price))))
         strict = problem.budget is not None and problem.budget <= WITHIN
-        return cls(duals.comfort * STEEPER if strict else duals.comfort)
+        price = STEEPER * duals.comfort if strict else duals.comfort
+        return cls(price, dearest * float(home.hvac.max_power) * float(home.slot_length))
 
-    def nearer(self, beyond: float, expected: float) -> "_ComfortPrice":
+    def nearer(self, beyond: float, expected: float) -> "ComfortPrice":
         """After a schedule that is ``beyond`` the budget [degC]; ``expected`` is tried if it can be."""
-        low = max(self.low, self.price) if beyond > WITHIN else self.low
-        high = min(self.high, self.price) if beyond < -WITHIN else self.high
-        if (low, high) == (self.low, self.high):
+        if abs(beyond) <= WITHIN:
             return self
-        middle = STEEPER * max(low, expected) if np.isinf(high) else 0.5 * (low + high)
-        return _ComfortPrice(expected if low < expected < high else middle, low, high)
+        low = max(self.low, self.price) if beyond > 0 else self.low
+        high = min(self.high, self.price) if beyond < 0 else self.high
+        if low < expected < high:
+            price = expected
+        elif np.isinf(high):
+            price = STEEPER * low if low > 0 else self.unit
+        else:
+            price = 0.5 * (low + high)
+        return replace(self, price=price, low=low, high=high)
 
 
 def _first_views(problem: PlanningProblem, duals: _Duals) -> list[View]:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from hemma.optimisation.exact.constraints import add_battery, add_building, idling_pays
-from hemma.optimisation.exact.modes import SlotModes
+from hemma.optimisation.exact.constraints import add_battery, add_building
+from hemma.optimisation.exact.modes import SlotModes, penalty
 from hemma.optimisation.exact.planning import PlanningProblem
 from hemma.optimisation.exact.programme import EXACT, Programme
 
@@ -24,7 +24,11 @@ class OwnSchedule:
 
 
 def own_schedule(problem: PlanningProblem, modes: SlotModes, comfort: float) -> OwnSchedule:
-    """The best schedule at the costs of these modes: those of battery and building, which do not meet."""
+    """The best schedule at the costs of these modes: those of battery and building, which do not meet.
+
+    Where a mode must charge or discharge more than the battery can, it does less, at a ``penalty``: what the
+    dynamic programme forgives may be such a little more.
+    """
     dt, programme = float(problem.home.slot_length), Programme(problem.exogenous.slots)
     house = store = h = None
     if problem.response is not None:
@@ -38,10 +42,14 @@ def own_schedule(problem: PlanningProblem, modes: SlotModes, comfort: float) -> 
             programme.add_columns(0.0, kW, price * dt)
             for kW, price in zip(lengths.T, modes.prices.T, strict=True)
         ]
+        dear = penalty(problem.home.battery, modes) * dt
+        short = programme.add_columns(0.0, np.maximum(modes.least_power, 0.0), dear)
+        over = programme.add_columns(0.0, np.maximum(-modes.most_power, 0.0), dear)
         e = ((store.charge, 1.0), (store.discharge, -1.0), *((part, -1.0) for part in parts))
-        programme.add_rows(modes.least_power, modes.least_power, *e)
-        programme = programme.fixed(modes.charges[idling_pays(problem.home.battery, problem.exogenous)])
-    x, nothing = programme.solve(EXACT).values, np.zeros(problem.exogenous.slots)
+        programme.add_rows(modes.least_power, modes.least_power, *e, (short, 1.0), (over, -1.0))
+        programme.add_rows(-np.inf, np.maximum(modes.most_power, 0.0), (store.charge, 1.0))
+        programme.add_rows(-np.inf, np.maximum(-modes.least_power, 0.0), (store.discharge, 1.0))
+    x, nothing = programme.relaxed().solve(EXACT).values, np.zeros(problem.exogenous.slots)
     return OwnSchedule(
         hvac=nothing if house is None else x[house.hvac],
         battery=nothing if store is None else x[store.charge] - x[store.discharge],
