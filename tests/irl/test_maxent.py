@@ -249,7 +249,6 @@ def acted(imitators, run, seed):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_one_step_an_idle_expert_teaches_rest(imitators):
     """What the HVAC's power is worth, it is worth at once."""
     assert float(acted(imitators, 0, seed=9).actions[:, 1].mean()) < 0.1

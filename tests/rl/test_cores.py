@@ -36,7 +36,6 @@ def digest(cores):
     return done.stdout
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="cores can be given on Linux alone")
 def test_a_gradient_is_the_same_on_one_core_and_on_all():
     assert digest("one") == digest("all")
