@@ -27,6 +27,8 @@ SLOW = 0.7
 """Part of the gap that better duals alone may leave before more is looked at more closely."""
 AT_ONCE = 60
 """Slots that are looked at more closely in one round."""
+HOPELESS = 0.4
+"""Share of the slots beyond which looking at all of them more closely would need too many pairs."""
 STEEPER = 8.0
 """By how much the price of comfort is raised where it is too low and no limit is known."""
 WITHIN = 1e-6
@@ -90,6 +92,8 @@ def _by_modes(problem: PlanningProblem, whole: WrittenProblem, settings: SolverS
         own = own_schedule(problem, modes.modes, comfort.price)
         hidden = _hidden(below_cost(problem, modes.modes, own.hvac, own.battery), gap)
         if len(hidden) <= AT_ONCE or gap > SLOW * before:
+            if len(hidden) > max(AT_ONCE, HOPELESS * len(views)):
+                break
             views = _closer(problem, views, own, hidden[:AT_ONCE])
         views = _priced(views, duals)
         if problem.budget is not None:

@@ -27,7 +27,7 @@ class SolverSettings:
     """Largest (objective - bound) / |objective| at which it stops."""
     max_nodes: int = 200
     """Nodes after which branch and bound gives up, with what it has proved by then."""
-    rounds: int = 16
+    rounds: int = 32
     """How often modes are sought with better duals, where prices are odd (``odd_prices``)."""
     most_branched: int = 300
     """Odd slots up to which branch and bound tries to close the gap that modes have left."""
