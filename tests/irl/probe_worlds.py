@@ -1,5 +1,7 @@
 """Small homes and experts whose right answer is known, for the learners that imitate."""
 
+from dataclasses import replace
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -74,7 +76,8 @@ def ruled_task(rule, seed=0, days=5):
 def imitation_task(shown, scaler, seed=0, days=5):
     """The task of imitating what was shown on those days, seen through a scaler that is already known."""
     task = make_task(Home(), Home(), traces(days), shown, seed)
-    seen = Transitions(scaler(shown.states), task.teacher.transitions.fractions, scaler(shown.next_states))
+    deeds = task.teacher.transitions
+    seen = replace(deeds, features=scaler(shown.states), next_features=scaler(shown.next_states))
     return eqx.tree_at(lambda t: (t.environment.scaler, t.teacher.transitions), task, (scaler, seen))
 
 
@@ -116,4 +119,4 @@ def shown_by(policy, scaler, days=5):
 def transitions(samples, seed=0):
     """Transitions without sense: for equations that hold for any."""
     rng = np.random.default_rng(seed)
-    return Transitions(*(jnp.asarray(rng.normal(size=(samples, n)), float) for n in (8, 2, 8)))
+    return Transitions(*(jnp.asarray(rng.normal(size=(samples, n)), float) for n in (8, 2, 8, 0)))

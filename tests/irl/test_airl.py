@@ -20,7 +20,7 @@ from hemma.rl import training
 from hemma.rl.environment import Transitions
 from hemma.rl.improvement import Proximal
 from hemma.rl.policies.committee import Committee
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExpertData, make_task, stack
 
@@ -39,7 +39,7 @@ def task(seed=0, days=5):
 
 def transitions(samples, seed=0):
     rng = np.random.default_rng(seed)
-    return Transitions(*(jnp.asarray(rng.normal(size=(samples, n)), float) for n in (8, 2, 8)))
+    return Transitions(*(jnp.asarray(rng.normal(size=(samples, n)), float) for n in (8, 2, 8, 0)))
 
 
 def test_reward_is_g_plus_discounted_shaping_difference():
@@ -85,7 +85,7 @@ def test_logit_is_that_of_equation_10_and_loss_that_of_equation_12():
 
 
 def test_the_density_of_an_impossible_action_is_bounded():
-    policy = GaussianPolicy((16,), jax.random.key(2))
+    policy = StochasticPolicy((16,), jax.random.key(2))
     far = eqx.tree_at(lambda t: t.fractions, transitions(3), jnp.full((3, 2), 1e30))
     contest = Contest(ExpertData(far, jnp.asarray(3)), far, policy, jnp.asarray([0.2, 0.1]))
     np.testing.assert_array_equal(contest.density(far, 10.0), [-10.0] * 3)

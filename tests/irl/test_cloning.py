@@ -14,10 +14,11 @@ from probe_worlds import demonstrate, price_rule, ruled_task, traces
 from companions import assert_alone_as_among_others
 from hemma.errors import HemmaError
 from hemma.home import Home
-from hemma.irl.cloning import BehaviourCloning, CloningSettings, cloning_loss, residual, split_days
+from hemma.irl.cloning import BehaviourCloning, CloningSettings, cloning_loss, split_days
 from hemma.rl import training
-from hemma.rl.policies.actions import to_power
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.fractions import to_power
+from hemma.rl.policies.policy import StochasticPolicy
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.rl.task import stack
 
 SMALL = CloningSettings(iterations=50, batch=64, hidden=(16,))
@@ -40,11 +41,11 @@ def test_an_action_at_a_bound_asks_for_no_more_than_the_bound():
     mean = jnp.asarray([[1.4, -1.5], [0.7, -0.2], [0.5, 1.2], [-1.2, 1.2]])
     shown = jnp.asarray([[1.0, -1.0], [1.0, -1.0], [0.2, 0.9], [1.0, -1.0]])
     expected = [[0.0, 0.0], [-0.3, 0.8], [0.3, 0.3], [-2.2, 2.2]]
-    np.testing.assert_allclose(residual(mean, shown), expected, atol=1e-6)
+    np.testing.assert_allclose(FRACTIONS.error(mean, shown, jnp.zeros((4, 0))), expected, atol=1e-6)
 
 
 def test_loss_is_the_mean_square_over_what_counts():
-    task, policy = ruled_task(price_rule, days=2), GaussianPolicy((16,), jax.random.key(0))
+    task, policy = ruled_task(price_rule, days=2), StochasticPolicy((16,), jax.random.key(0))
     moved = eqx.tree_at(lambda p: p.bias, policy, jnp.asarray([0.3, -0.2]))
     counted = jnp.arange(47) % 3 == 0
     total = np.zeros(2)

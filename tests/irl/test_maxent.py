@@ -29,7 +29,7 @@ from hemma.irl.maxent import MaxEntSettings, compare, linear_maxent, neural_maxe
 from hemma.irl.maxent_rewards import Comparison, LearnedWeights, LinearMaxEnt, NeuralMaxEnt
 from hemma.irl.reward_features import LinearReward, RewardFeatures, demonstrated_scale, reward_features
 from hemma.rl import training
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.task import stack
 
 SMALL = MaxEntSettings(iterations=50, windows=4, slots=12, neural=NeuralMaxEnt(hidden=(16,), steps=2))
@@ -154,7 +154,7 @@ def test_a_policy_that_is_the_expert_leaves_nothing_to_compare():
 
     It uses more of the HVAC than comfort asks for, where every fraction is another power.
     """
-    policy = GaussianPolicy((16,), jax.random.key(4))
+    policy = StochasticPolicy((16,), jax.random.key(4))
     law = (jnp.zeros((2, 8)).at[:, 5].set(jnp.asarray([-0.5, 0.1])), jnp.asarray([0.0, 0.5]))
     policy = eqx.tree_at(lambda p: (p.linear, p.bias), policy, law)
     scaler = ruled_task(price_rule).environment.scaler
@@ -166,7 +166,7 @@ def test_a_policy_that_is_the_expert_leaves_nothing_to_compare():
 
 def test_both_sides_of_a_comparison_see_the_same_prices_and_weather():
     task = ruled_task(price_rule)
-    policy = GaussianPolicy((16,), jax.random.key(4))
+    policy = StochasticPolicy((16,), jax.random.key(4))
     both = compare(task.environment, task.teacher, policy, (24, 6), jax.random.key(2))
     given = np.asarray([0, 1, 3, 5, 6, 7])
     for side in ("features", "next_features"):
@@ -176,7 +176,7 @@ def test_both_sides_of_a_comparison_see_the_same_prices_and_weather():
 
 def test_windows_longer_than_the_demonstrations_go_round():
     task = ruled_task(price_rule, days=1)
-    policy = GaussianPolicy((16,), jax.random.key(4))
+    policy = StochasticPolicy((16,), jax.random.key(4))
     both = compare(task.environment, task.teacher, policy, (48, 3), jax.random.key(2))
     assert all(np.isfinite(np.asarray(x)).all() for x in jax.tree.leaves(both))
     np.testing.assert_array_equal(both.expert.features[0], both.expert.features[23 * 3])

@@ -22,7 +22,7 @@ from hemma.home import Home
 from hemma.irl.maxent import MaxEntSettings, linear_maxent, neural_maxent
 from hemma.irl.maxent_rewards import LinearMaxEnt
 from hemma.rl import training
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.task import stack
 
 pytestmark = pytest.mark.slow
@@ -87,6 +87,6 @@ def agreement(true, found):
 
 def stranger(seed):
     """A policy with random weights."""
-    policy = GaussianPolicy((16,), jax.random.key(seed))
+    policy = StochasticPolicy((16,), jax.random.key(seed))
     slopes = jax.random.normal(jax.random.key(100 + seed), (2, 8))
     return eqx.tree_at(lambda p: p.linear, policy, slopes)

@@ -22,7 +22,7 @@ from hemma.rl.ddpg import (
     followed,
 )
 from hemma.rl.environment import Transitions
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.replay_buffer import Experience, empty_memory
 
 LEARNER = DDPG(
@@ -41,15 +41,14 @@ LEARNER = DDPG(
 
 def experience(first, samples):
     numbers = jnp.arange(first, first + samples, dtype=float)
-    transitions = Transitions(
-        jnp.repeat(numbers[:, None], 8, 1), jnp.zeros((samples, 2)), jnp.repeat(numbers[:, None], 8, 1)
-    )
+    states, nothing = jnp.repeat(numbers[:, None], 8, 1), jnp.zeros((samples, 0))
+    transitions = Transitions(states, jnp.zeros((samples, 2)), states, nothing)
     return Experience(transitions, numbers)
 
 
 def networks(seed):
     actor_key, critic_key = jax.random.split(jax.random.key(seed))
-    return ActorAndCritic(GaussianPolicy((8,), actor_key), Critic((8,), critic_key))
+    return ActorAndCritic(StochasticPolicy((8,), actor_key), Critic((8,), critic_key))
 
 
 def batch(samples=6, seed=0):
@@ -57,7 +56,7 @@ def batch(samples=6, seed=0):
     features, following = (jnp.asarray(rng.normal(size=(samples, 8)), float) for _ in range(2))
     fractions = jnp.asarray(rng.uniform(-1, 1, (samples, 2)), float)
     rewards = jnp.asarray(rng.normal(size=samples), float)
-    return Experience(Transitions(features, fractions, following), rewards)
+    return Experience(Transitions(features, fractions, following, jnp.zeros((samples, 0))), rewards)
 
 
 def test_the_newest_takes_the_place_of_the_oldest():

@@ -24,7 +24,7 @@ from hemma.rl.explicit import (
     usual_price,
 )
 from hemma.rl.policies.exploration import Exploration
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExplicitReward, explicit_task, stack
 from hemma.types import Costs
@@ -52,7 +52,7 @@ def test_learners_see_the_same_numbers_in_any_currency():
     rewards = []
     for traces, price in ((dollars, 0.5), (crowns, 5.5)):
         task = explicit_task(home, home, traces, price, 0)
-        policy = GaussianPolicy((8,), jax.random.key(0))
+        policy = StochasticPolicy((8,), jax.random.key(0))
         rollout = collect(task.environment, policy, jnp.asarray([0.3, 0.3]), (12, 4), jax.random.key(1))
         ageing = rollout.costs.ageing  # k_e is a price too, and stays in dollars here
         rewards.append(
@@ -70,7 +70,7 @@ def test_learners_are_paid_the_reward_but_for_what_no_policy_changes_day_by_day(
     """In currency, and with u (l - p) dt taken out, the sums differ by the worth of what is left in store."""
     traces, home = two_price_traces(), Home()
     task = explicit_task(home, home, traces, 0.5, 0)
-    policy = GaussianPolicy((8,), jax.random.key(0))
+    policy = StochasticPolicy((8,), jax.random.key(0))
     rollout = collect(task.environment, policy, jnp.asarray([0.8, 0.8]), (12, 4), jax.random.key(1))
     price = float(usual_price(task.environment))
     paid = np.asarray(scaled_reward(rollout, task)).sum(axis=0) * price * 3.0  # c^max is above h^max

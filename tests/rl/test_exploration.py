@@ -9,7 +9,7 @@ import pytest
 
 from hemma.errors import HemmaError
 from hemma.rl.policies.exploration import Exploration, falling
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 
 
 def test_deviation_shrinks_geometrically_and_then_stays():
@@ -20,7 +20,7 @@ def test_deviation_shrinks_geometrically_and_then_stays():
 
 
 def test_the_average_forgets_the_first_policy_and_then_moves_slowly():
-    old, new = (GaussianPolicy((4,), jax.random.key(seed)) for seed in (0, 1))
+    old, new = (StochasticPolicy((4,), jax.random.key(seed)) for seed in (0, 1))
     exploration = Exploration(averaging=0.9)
     first = exploration.averaged(old, new, jnp.asarray(0))
     late = exploration.averaged(old, new, jnp.asarray(10_000))

@@ -10,8 +10,9 @@ from scipy.stats import norm
 from hemma.home import Home
 from hemma.rl import ppo
 from hemma.rl.environment import Environment, collect
-from hemma.rl.policies.policy import GaussianPolicy, log_density
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.policies.scaling import fit_scaler
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.rl.ppo import Objective, PPOSettings, advantages
 from hemma.types import Exogenous
 
@@ -83,12 +84,13 @@ def test_log_density_is_that_of_independent_gaussians():
     actions, mean = rng.normal(size=(5, 2)), rng.normal(size=(5, 2))
     deviation = np.asarray([0.2, 0.05])
     expected = norm.logpdf(actions, mean, deviation).sum(axis=1)
-    computed = log_density(*(jnp.asarray(x, float) for x in (actions, mean, deviation)))
+    actions, mean, deviation = (jnp.asarray(x, float) for x in (actions, mean, deviation))
+    computed = FRACTIONS.log_density(actions, jnp.zeros((5, 0)), mean, deviation)
     np.testing.assert_allclose(computed, expected, rtol=1e-4)
 
 
 def test_the_mean_is_affine_within_the_bounds_and_bent_beyond():
-    policy = GaussianPolicy((8,), jax.random.key(0))
+    policy = StochasticPolicy((8,), jax.random.key(0))
     weights = jnp.zeros((2, 8)).at[0, 5].set(1.0).at[1, 4].set(2.0)
     policy = eqx.tree_at(
         lambda p: (p.linear, p.bias, p.network.weights),

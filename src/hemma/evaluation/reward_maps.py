@@ -13,7 +13,6 @@ from hemma.errors import HemmaError
 from hemma.home import Home, HomeState, observe
 from hemma.irl.learned_reward import LearnedReward
 from hemma.irl.reoptimise import ground
-from hemma.rl.policies.actions import to_power
 from hemma.types import Array, Exogenous
 
 FRACTIONS = np.linspace(-1.0, 1.0, 81)
@@ -136,7 +135,8 @@ def _answer(run: LearnedReward, home: Home, point: Moment, fractions: Float[Arra
         slot=jnp.zeros((), int),
     )
     observation = observe(state, point.now)
-    step = home.step(state, point.now, to_power(home, observation, fractions), jnp.zeros(()))
+    action = run.space.tried(home, observation, fractions)
+    step = home.step(state, point.now, action, jnp.zeros(()))
     seen = run.transitions(observation, fractions, observe(step.state, point.after))
     return Answers(
         battery_power=step.action.battery_power,

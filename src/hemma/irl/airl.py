@@ -13,10 +13,10 @@ from hemma.home.checks import require
 from hemma.irl.discriminator import cross_entropy, gradient_penalty
 from hemma.irl.reward import AbstractHead, ShapedReward
 from hemma.rl.descent import begin, descend
-from hemma.rl.environment import Rollout, Transitions
+from hemma.rl.environment import Rollout, Transitions, flattened
 from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, measured, standard
 from hemma.rl.policies.exploration import Exploration, falling
-from hemma.rl.policies.policy import GaussianPolicy, log_density
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.task import ExpertData, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
@@ -46,6 +46,8 @@ class AIRLSettings:
     """Weight of the gradient penalty at first."""
     relaxing: float = 1.0
     """Share of the iterations over which that weight falls to 0, linearly."""
+    entropy: float = 0.1
+    """Weight of the policy's entropy beside the reward, where the policy can change it (`stored value`)."""
     log_density_bound: float = 10.0
     """log pi enters the logit within plus and minus this."""
     hidden: tuple[int, ...] = (64,)
@@ -63,7 +65,8 @@ class AIRLSettings:
         require("airl", seen, "agent_rollouts <= rollouts", self.agent_rollouts)
         for name in ("learning_rate", "log_density_bound"):
             require("airl", getattr(self, name) > 0, f"{name} > 0", getattr(self, name))
-        require("airl", self.penalty >= 0, "penalty >= 0", self.penalty)
+        for name in ("penalty", "entropy"):
+            require("airl", getattr(self, name) >= 0, f"{name} >= 0", getattr(self, name))
         require("airl", 0 < self.relaxing <= 1, "0 < relaxing <= 1", self.relaxing)
         require(
             "airl", all(width >= 1 for width in self.hidden), "hidden layers of at least 1 unit", self.hidden
@@ -84,7 +87,7 @@ class ImitationState(eqx.Module):
     head_optimiser: optax.OptState
     replay: Transitions
     """Agent transitions of the last iterations, (replayed, samples, ...)."""
-    average: GaussianPolicy
+    average: StochasticPolicy
     """Exponential moving average of the policy's weights."""
     iteration: Int[Array, ""]
     key: Array
@@ -119,7 +122,7 @@ class AdversarialImitation:
         """N."""
         return self.settings.iterations
 
-    def policy(self, state: ImitationState) -> GaussianPolicy:
+    def policy(self, state: ImitationState) -> StochasticPolicy:
         """The averaged policy."""
         return state.average
 
@@ -165,7 +168,7 @@ class AdversarialImitation:
         )
 
         # Train the energy management policy (lines 9 and 10).
-        rewards = head.rewards(rollout.transitions)
+        rewards = head.rewards(rollout.transitions) + settings.entropy * rollout.surprise
         learner = self.improvement.improve(state.learner, rollout, standard(rewards), effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
         seen = measured(rollout, rewards)
@@ -178,7 +181,7 @@ class AdversarialImitation:
     def _kept(self, rollout: Rollout) -> Transitions:
         """The transitions of the first rollouts, (samples, ...)."""
         first = jax.tree.map(lambda x: x[:, : self.settings.agent_rollouts], rollout.transitions)
-        return jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), first)
+        return flattened(first)
 
 
 class Contest(eqx.Module):
@@ -187,7 +190,7 @@ class Contest(eqx.Module):
     expert: ExpertData
     replay: Transitions
     """Of the agent, (replayed, samples, ...)."""
-    policy: GaussianPolicy
+    policy: StochasticPolicy
     """Present policy: log pi of both sides is taken under it, without gradient."""
     deviation: Float[Array, "actions"]
     """Its sigma, and that of the expert's jitter."""
@@ -197,17 +200,18 @@ class Contest(eqx.Module):
     def density(self, transitions: Transitions, bound: float) -> Float[Array, "samples"]:
         """log pi(a|s) within plus and minus ``bound``: an action far from the mean would otherwise have an
         unbounded logit, and its reward no gradient."""
-        means = jax.vmap(self.policy.mean)(transitions.features)
-        return jnp.clip(log_density(transitions.fractions, means, self.deviation), -bound, bound)
+        means, space = jax.vmap(self.policy.mean)(transitions.features), self.policy.space
+        density = space.log_density(transitions.fractions, transitions.reach, means, self.deviation)
+        return jnp.clip(density, -bound, bound)
 
     def sample(self, batch: int, key: Array) -> tuple[Transitions, Transitions]:
         """So many transitions of the expert, jittered, and as many of the agent."""
         expert_key, jitter_key, agent_key = jax.random.split(key, 3)
         rows = jax.random.randint(expert_key, (batch,), 0, self.expert.available)
         experts = jax.tree.map(lambda x: x[rows], self.expert.transitions)
-        jitter = self.deviation * jax.random.normal(jitter_key, experts.fractions.shape)
+        jitter = self.deviation * self.policy.space.jitter(jitter_key, (batch,))
         experts = eqx.tree_at(lambda t: t.fractions, experts, experts.fractions + jitter)
-        agent = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), self.replay)
+        agent = flattened(self.replay)
         rows = jax.random.randint(agent_key, (batch,), 0, agent.fractions.shape[0])
         return experts, jax.tree.map(lambda x: x[rows], agent)
 

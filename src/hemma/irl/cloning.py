@@ -11,8 +11,10 @@ from jaxtyping import Bool, Float, Int
 from hemma.home.checks import require
 from hemma.rl.descent import begin, descend
 from hemma.rl.environment import Transitions
+from hemma.rl.policies.action_space import ActionSpace
 from hemma.rl.policies.exploration import falling
-from hemma.rl.policies.policy import ACTIONS, GaussianPolicy
+from hemma.rl.policies.policy import ACTIONS, StochasticPolicy
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.rl.task import ExpertData, Task
 from hemma.rl.training import CHUNK
 from hemma.types import Array
@@ -53,10 +55,10 @@ class CloningSettings:
 class CloningState(eqx.Module):
     """All that training carries from iteration to iteration."""
 
-    policy: GaussianPolicy
+    policy: StochasticPolicy
     """As far as the regression has come."""
     optimiser: optax.OptState
-    best: GaussianPolicy
+    best: StochasticPolicy
     """The best so far on the held-out days, battery and HVAC each by itself."""
     best_loss: Float[Array, "*runs actions"]
     """Its loss there."""
@@ -80,20 +82,22 @@ class BehaviourCloning:
     """Least squares by minibatches, stopped where the held-out days say so."""
 
     settings: CloningSettings = field(default_factory=CloningSettings)
+    space: ActionSpace = FRACTIONS
+    """What the policy decides on."""
 
     @property
     def iterations(self) -> int:
         """How many iterations a training takes."""
         return self.settings.iterations
 
-    def policy(self, state: CloningState) -> GaussianPolicy:
+    def policy(self, state: CloningState) -> StochasticPolicy:
         """The best so far on the held-out days."""
         return state.best
 
     def start(self, task: Task[ExpertData], key: Array) -> CloningState:
         """A random policy."""
         policy_key, key = jax.random.split(key)
-        policy = GaussianPolicy(self.settings.hidden, policy_key, task.environment.width)
+        policy = StochasticPolicy(self.settings.hidden, policy_key, task.environment.width, self.space)
         nothing = jnp.full(ACTIONS, jnp.inf)
         return CloningState(policy, begin(self._method(), policy), policy, nothing, jnp.zeros((), int), key)
 
@@ -140,32 +144,24 @@ def split_days(task: Task[ExpertData], every: int) -> tuple[Bool[Array, "samples
 
 
 def cloning_loss(
-    policy: GaussianPolicy, transitions: Transitions, counted: Bool[Array, "samples"]
+    policy: StochasticPolicy, transitions: Transitions, counted: Bool[Array, "samples"]
 ) -> Float[Array, "actions"]:
-    """Mean square of ``residual`` over the transitions that count, of battery and HVAC."""
+    """Mean square of the space's error over the transitions that count, of battery and HVAC."""
     means = jax.vmap(policy.mean)(transitions.features)
-    squares = jnp.where(counted[:, None], residual(means, transitions.fractions) ** 2, 0.0)
+    error = policy.space.error(means, transitions.fractions, transitions.reach)
+    squares = jnp.where(counted[:, None], error**2, 0.0)
     return jnp.sum(squares, axis=0) / jnp.maximum(jnp.sum(counted), 1)
 
 
-def residual(mean: Float[Array, "*batch actions"], shown: Float[Array, "*batch actions"]) -> Array:
-    """mu - a, where an action at a bound says only that the mean was there or beyond.
-
-    The expert's powers are bounded, the policy's mean is not: at a = 1 only min(mu - 1, 0) is an error, at
-    a = -1 only max(mu + 1, 0). This is the censored regression of Tobin 1958 with squares for likelihoods.
-    """
-    error = mean - shown
-    error = jnp.where(shown >= 1.0, jnp.minimum(error, 0.0), error)
-    return jnp.where(shown <= -1.0, jnp.maximum(error, 0.0), error)
-
-
-def _decayed(policy: GaussianPolicy) -> GaussianPolicy:
+def _decayed(policy: StochasticPolicy) -> StochasticPolicy:
     """Which leaves decay: the weights of the network. The affine part has no more freedom than the law."""
     rest = jax.tree.map(lambda _: False, policy)
     return eqx.tree_at(lambda t: t.network.weights, rest, tuple(True for _ in policy.network.weights))
 
 
-def _better(best: GaussianPolicy, policy: GaussianPolicy, improved: Bool[Array, "actions"]) -> GaussianPolicy:
+def _better(
+    best: StochasticPolicy, policy: StochasticPolicy, improved: Bool[Array, "actions"]
+) -> StochasticPolicy:
     """The parts of ``policy`` that improved, the rest of ``best``: battery and HVAC share no weights."""
     battery = improved[0]
     network = jax.tree.map(lambda b, p: jnp.where(battery, p, b), best.network, policy.network)

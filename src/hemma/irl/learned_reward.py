@@ -13,8 +13,10 @@ from hemma.checkpoint import load_header, load_shapes, load_tree, save_tree
 from hemma.errors import HemmaError
 from hemma.irl.reward import ShapedReward
 from hemma.rl.environment import Transitions
+from hemma.rl.policies.action_space import ActionSpace
 from hemma.rl.policies.policy import FEATURES
 from hemma.rl.policies.scaling import StateScaler
+from hemma.rl.policies.spaces import FRACTIONS, space_of
 from hemma.types import Array, Observation
 
 KIND = "learned reward"
@@ -25,14 +27,16 @@ class LearnedReward(eqx.Module):
 
     Where several agents learned in a run, the rewards of a run lie along a second axis of the head.
 
-    It reads states in their units through its scaler, and actions as fractions of what is feasible
-    (``hemma.rl.policies.actions``): which powers these are is a matter of the home it is asked about.
+    It reads states in their units through its scaler, and actions as the deeds of its ``space`` are read:
+    which powers these are is a matter of the home it is asked about.
     """
 
     head: ShapedReward
     """r, of scaled states."""
     scaler: StateScaler
     """That of the demonstrations."""
+    space: ActionSpace = eqx.field(static=True, default=FRACTIONS)
+    """Whose deeds it reads."""
 
     @property
     def runs(self) -> int:
@@ -53,7 +57,7 @@ class LearnedReward(eqx.Module):
         """That of one run, or of one agent of it."""
         place = (number, member) if len(self._axes) > 1 else (number,)
         head = jax.tree.map(lambda x: x[place], self.head)
-        return LearnedReward(head, jax.tree.map(lambda x: x[number], self.scaler))
+        return LearnedReward(head, jax.tree.map(lambda x: x[number], self.scaler), self.space)
 
     def transitions(
         self,
@@ -62,7 +66,8 @@ class LearnedReward(eqx.Module):
         after: Observation,
     ) -> Transitions:
         """(s, a, s') of what is observed as the head reads it, where it sees no context."""
-        return Transitions(self.scaler.observed(observation), fractions, self.scaler.observed(after))
+        reach = jnp.zeros((*fractions.shape[:-1], 0))
+        return Transitions(self.scaler.observed(observation), fractions, self.scaler.observed(after), reach)
 
 
 def save_rewards(path: Path, rewards: LearnedReward, header: Mapping[str, Any]) -> None:
@@ -74,6 +79,7 @@ def save_rewards(path: Path, rewards: LearnedReward, header: Mapping[str, Any]) 
         "hidden": [bias.shape[-1] for bias in g.biases[:-1]],
         "features": rewards.head.shaping.weights[0].shape[-1],
         "discount": rewards.head.discount,
+        "actions": rewards.space.name,
     }
     save_tree(path, rewards, {**header, **shape})
 
@@ -92,7 +98,8 @@ def load_rewards(path: Path) -> LearnedReward:
     one = LearnedReward(head, StateScaler(jnp.zeros(quantities), jnp.ones(quantities)))
     axes = tuple(header["axes"])
     runs = axes[:1]  # the members of a committee share the scaler of their run
-    like = LearnedReward(_stacked(one.head, axes), _stacked(one.scaler, runs))
+    space = space_of(path, header)
+    like = LearnedReward(_stacked(one.head, axes), _stacked(one.scaler, runs), space)
     return load_tree(path, like)
 
 

@@ -4,6 +4,7 @@ Ziebart et al. 2008 for the principle, Wulfmeier et al. 2015 (arXiv 1507.04888) 
 for buildings; ``docs/maxent.md`` has the mathematics.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,10 +15,11 @@ from jaxtyping import Float, Int
 
 from hemma.home.checks import require
 from hemma.irl.maxent_rewards import Comparison, LinearMaxEnt, NeuralMaxEnt, RewardLearner
-from hemma.rl.environment import Environment, rolled_out
+from hemma.rl.environment import Environment, flattened, rolled_out
 from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, measured, standard
+from hemma.rl.policies.action_space import Deed
 from hemma.rl.policies.exploration import Exploration, falling
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.policies.scaling import HOUR
 from hemma.rl.task import ExpertData, Task
 from hemma.rl.training import CHUNK
@@ -56,7 +58,7 @@ class MaxEntState(eqx.Module):
     """pi_n and what its improvement carries on."""
     learned: Any
     """r_n and what its learner carries on."""
-    average: GaussianPolicy
+    average: StochasticPolicy
     """Exponential moving average of the policy's weights."""
     iteration: Int[Array, "*runs"]
     key: Array
@@ -88,7 +90,7 @@ class MaxEnt:
         """How many iterations a training takes."""
         return self.settings.iterations
 
-    def policy(self, state: MaxEntState) -> GaussianPolicy:
+    def policy(self, state: MaxEntState) -> StochasticPolicy:
         """The averaged policy."""
         return state.average
 
@@ -114,7 +116,7 @@ class MaxEnt:
         # The policy.
         effort = Effort(settings.exploration.deviation(n, settings.iterations), share)
         rollout = self.improvement.explore(state.learner, task.environment, effort, explore_key)
-        rewards = standard(reward.batch(rollout.transitions))
+        rewards = standard(reward.batch(rollout.transitions) + rollout.surprise)
         learner = self.improvement.improve(state.learner, rollout, rewards, effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
         gap = jnp.mean(reward.batch(comparison.expert)) - jnp.mean(reward.batch(comparison.agent))
@@ -136,7 +138,7 @@ def neural_maxent(settings: MaxEntSettings, improvement: PolicyImprovement) -> M
 def compare(
     environment: Environment,
     expert: ExpertData,
-    policy: GaussianPolicy,
+    policy: StochasticPolicy,
     shape: tuple[int, int],
     key: Array,
 ) -> Comparison:
@@ -154,12 +156,13 @@ def compare(
     first = shown.features[0]
     states = jax.vmap(environment.home.reset)(*_stood(environment, first))
 
-    def act(features: Array, nothing: Array) -> tuple[Array, Array]:
-        return policy.mean(features), nothing
+    def act(features: Array, nothing: Array) -> tuple[Array, Callable[[Deed], tuple[Array, Array]]]:
+        return policy.mean(features), lambda deed: (nothing, nothing)
 
     nothing = jnp.zeros((slots, windows))
-    played = rolled_out(environment, act, (states, starts, first), nothing, disturbance_key).transitions
-    return Comparison(*(jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), t) for t in (shown, played)))
+    begin = (states, starts, first)
+    played = rolled_out(environment, policy.space, act, begin, nothing, disturbance_key).transitions
+    return Comparison(flattened(shown), flattened(played))
 
 
 def _stood(environment: Environment, features: Float[Array, "windows features"]) -> tuple[Array, Array]:

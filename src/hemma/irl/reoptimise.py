@@ -16,7 +16,7 @@ from hemma.rl.environment import Rollout, Transitions
 from hemma.rl.explicit import ExplicitLearning, ExplicitState
 from hemma.rl.improvement import RolloutMeans, standard
 from hemma.rl.policies.network import Network
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.policies.scaling import StateScaler
 from hemma.rl.task import ExplicitReward, Task
 from hemma.types import Array
@@ -53,7 +53,7 @@ class Inheritance(eqx.Module):
     """A reward and the policy that was learned with it."""
 
     reward: ShapedReward
-    policy: GaussianPolicy
+    policy: StochasticPolicy
 
     def rewards(self, transitions: Transitions) -> Float[Array, "*batch"]:
         """r of each transition."""
@@ -78,7 +78,7 @@ class Reoptimisation:
         """How many iterations a training takes."""
         return self.learning.iterations
 
-    def policy(self, state: ExplicitState) -> GaussianPolicy:
+    def policy(self, state: ExplicitState) -> StochasticPolicy:
         """The averaged policy."""
         return self.learning.policy(state)
 
@@ -106,7 +106,7 @@ class InheritedReoptimisation:
         """How many iterations a training takes."""
         return self.learning.iterations
 
-    def policy(self, state: ExplicitState) -> GaussianPolicy:
+    def policy(self, state: ExplicitState) -> StochasticPolicy:
         """The averaged policy."""
         return self.learning.policy(state)
 

@@ -1,5 +1,6 @@
 """What tells expert from agent, and what the agent is paid for it: one head for each adversarial method."""
 
+import math
 from abc import abstractmethod
 
 import equinox as eqx
@@ -38,7 +39,8 @@ class AbstractHead(eqx.Module):
     def batch(self, transitions: Transitions) -> Float[Array, "*batch"]:
         """``self`` of many transitions at once."""
         shape = transitions.fractions.shape[:-1]
-        flat = jax.tree.map(lambda x: x.reshape(-1, x.shape[-1]), transitions)
+        samples = math.prod(shape)
+        flat = jax.tree.map(lambda x: x.reshape(samples, x.shape[-1]), transitions)
         return jax.vmap(self)(flat).reshape(shape)
 
 

@@ -23,7 +23,7 @@ class AdversarialImitator(AbstractImitator):
     def algorithm(self, experiment: Experiment) -> Committee:
         """A committee of learners."""
         settings = experiment.airl
-        by_ppo = Proximal(replace(experiment.ppo, rollouts=settings.rollouts))
+        by_ppo = Proximal(replace(experiment.ppo, rollouts=settings.rollouts), experiment.space)
         return Committee(AdversarialImitation(settings, by_ppo, self.head), settings.members)
 
 

@@ -94,7 +94,7 @@ class ProximalBillLearner(AbstractBillLearner):
 
     def algorithm(self, experiment: Experiment) -> ExplicitLearning:
         """With settings of its own."""
-        return ExplicitLearning(experiment.explicit)
+        return ExplicitLearning(experiment.explicit, experiment.space)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,7 +18,7 @@ class Cloner(AbstractImitator):
 
     def algorithm(self, experiment: Experiment) -> BehaviourCloning:
         """Without any trial."""
-        return BehaviourCloning(experiment.cloning)
+        return BehaviourCloning(experiment.cloning, experiment.space)
 
 
 CLONING = Cloner(

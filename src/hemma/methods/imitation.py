@@ -89,4 +89,5 @@ class AbstractImitator(AbstractLearner):
 def demonstrated_task(expert: Expert, shown: Demonstration, seed: int, context: Context = NOTHING) -> Task:
     """The task of one run that learns from what ``expert`` showed, on the days on which it did."""
     case, days = expert.case, expert.case.first_days(shown.days)
-    return make_task(expert.planning_home, case.home, days, shown.demonstrated, seed, context)
+    space = case.experiment.space
+    return make_task(expert.planning_home, case.home, days, shown.demonstrated, seed, context, space)

@@ -23,7 +23,7 @@ class MaxEntImitator(AbstractImitator):
     def algorithm(self, experiment: Experiment) -> Algorithm:
         """PPO under a reward that is linear in named features, or a network."""
         make = neural_maxent if self.is_neural else linear_maxent
-        return make(experiment.maxent, Proximal(experiment.ppo))
+        return make(experiment.maxent, Proximal(experiment.ppo, experiment.space))
 
 
 MAXENT = MaxEntImitator(

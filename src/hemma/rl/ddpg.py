@@ -1,6 +1,6 @@
 """Deep deterministic policy gradient (Lillicrap et al. 2016, arXiv 1509.02971) on the explicit reward."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import equinox as eqx
 import jax
@@ -11,11 +11,11 @@ from jaxtyping import Float, Int
 from hemma.home.checks import require
 from hemma.rl.critic import Critic
 from hemma.rl.descent import begin, descend
-from hemma.rl.environment import Transitions, collect
+from hemma.rl.environment import Transitions, collect, flattened
 from hemma.rl.explicit import scaled_reward
 from hemma.rl.improvement import RolloutMeans, measured
 from hemma.rl.policies.exploration import Exploration, falling
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.rl.replay_buffer import Experience, Memory, empty_memory
 from hemma.rl.task import ExplicitReward, Task
 from hemma.rl.training import CHUNK
@@ -72,7 +72,7 @@ class DDPGSettings:
 class ActorAndCritic(eqx.Module):
     """mu(s) and Q(s, a)."""
 
-    actor: GaussianPolicy
+    actor: StochasticPolicy
     critic: Critic
 
     def value(self, features: Array, fractions: Array) -> Float[Array, "batch"]:
@@ -107,7 +107,7 @@ class DDPG:
         """How many rounds a training takes."""
         return self.settings.iterations
 
-    def policy(self, state: DDPGState) -> GaussianPolicy:
+    def policy(self, state: DDPGState) -> StochasticPolicy:
         """The target actor."""
         return state.target.actor
 
@@ -115,7 +115,7 @@ class DDPG:
         """Random networks, and a memory of what the random actor did."""
         width = task.environment.width
         actor_key, critic_key, act_key, key = jax.random.split(key, 4)
-        actor = GaussianPolicy(self.settings.hidden, actor_key, width)
+        actor = StochasticPolicy(self.settings.hidden, actor_key, width)
         critic = Critic(self.settings.hidden, critic_key, width)
         both = ActorAndCritic(actor, critic)
         experience, _ = self._act(task, actor, jnp.zeros((), int), act_key)
@@ -144,7 +144,7 @@ class DDPG:
         return eqx.tree_at(lambda s: s.iteration, state, state.iteration + 1), found
 
     def _act(
-        self, task: Task[ExplicitReward], actor: GaussianPolicy, iteration: Array, key: Array
+        self, task: Task[ExplicitReward], actor: StochasticPolicy, iteration: Array, key: Array
     ) -> tuple[Experience, RolloutMeans]:
         deviation = self.settings.exploration.deviation(iteration, self.settings.iterations)
         shape = (self.settings.slots, self.settings.rollouts)
@@ -152,9 +152,8 @@ class DDPG:
         rewards = scaled_reward(rollout, task)
         transitions = rollout.transitions
         done = jnp.clip(transitions.fractions, -1.0, 1.0)  # what the home took
-        transitions = Transitions(transitions.features, done, transitions.next_features)
-        experience = jax.tree.map(lambda x: x.reshape(-1, *x.shape[2:]), Experience(transitions, rewards))
-        return experience, measured(rollout, rewards)
+        transitions = replace(transitions, fractions=done)
+        return flattened(Experience(transitions, rewards)), measured(rollout, rewards)
 
     def _learn(self, state: DDPGState, batch: Experience) -> DDPGState:
         """One step of the critic, one of the actor, and the targets a little after them."""
@@ -184,14 +183,14 @@ def bellman_targets(target: ActorAndCritic, batch: Experience, discount: float) 
 
 
 def critic_loss(
-    critic: Critic, actor: GaussianPolicy, transitions: Transitions, targets: Float[Array, "batch"]
+    critic: Critic, actor: StochasticPolicy, transitions: Transitions, targets: Float[Array, "batch"]
 ) -> Array:
     """E[H(Q(s, a) - y)], H(x) = x^2 / 2 up to |x| = 1 and |x| - 1/2 beyond: price spikes are heavy tails."""
     value = ActorAndCritic(actor, critic).value(transitions.features, transitions.fractions)
     return jnp.mean(optax.huber_loss(value, targets))
 
 
-def actor_loss(actor: GaussianPolicy, critic: Critic, transitions: Transitions) -> Array:
+def actor_loss(actor: StochasticPolicy, critic: Critic, transitions: Transitions) -> Array:
     """-E[Q(s, mu(s))], Q taken at what the home does: the bound, where mu lies beyond it.
 
     The gradient passes as if mu were not bounded. Without the bound the critic would be asked about actions

@@ -1,6 +1,7 @@
 """The environment of a learner: a home that replays its training traces, in rollouts of fixed length."""
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import equinox as eqx
 import jax
@@ -8,21 +9,30 @@ import jax.numpy as jnp
 from jaxtyping import Float, Int
 
 from hemma.home import Home, HomeState, Step, observe, paper_state
-from hemma.rl.policies.actions import to_power
-from hemma.rl.policies.policy import FEATURES, GaussianPolicy, log_density
+from hemma.rl.policies.action_space import ActionSpace, Deed
+from hemma.rl.policies.policy import FEATURES, StochasticPolicy
 from hemma.rl.policies.scaling import SELLING, StateScaler
 from hemma.types import Array, Costs, Exogenous
 
+Tree = TypeVar("Tree")
+
 
 class Transitions(eqx.Module):
-    """Transitions (s, a, s') of a learner; states are in features, actions in fractions."""
+    """Transitions (s, a, s') of a learner; states are in features, actions as deeds are read."""
 
     features: Float[Array, "*batch features"]
     """s, scaled."""
     fractions: Float[Array, "*batch actions"]
-    """a, as sampled: may lie beyond [-1, 1]."""
+    """a, as ``Deed.fractions``."""
     next_features: Float[Array, "*batch features"]
     """s', scaled."""
+    reach: Float[Array, "*batch bounds"]
+    """As ``Deed.reach``."""
+
+
+def flattened(tree: Tree) -> Tree:
+    """Leaves of shape (slots, rollouts, ...) as (samples, ...)."""
+    return jax.tree.map(lambda x: x.reshape(x.shape[0] * x.shape[1], *x.shape[2:]), tree)
 
 
 class Rollout(eqx.Module):
@@ -31,6 +41,8 @@ class Rollout(eqx.Module):
     transitions: Transitions
     log_density: Float[Array, "*batch"]
     """log pi(a|s) under the policy that acted."""
+    surprise: Float[Array, "*batch"]
+    """As ``ActionSpace.surprise``; its mean is an entropy."""
     costs: Costs
     """X1, X2, X3 of the home. No learner of the paper's method reads them; explicit rewards do."""
 
@@ -87,45 +99,53 @@ class Environment(eqx.Module):
         seen = self.scaler(paper_state(observe(state, self.at(slot))))
         return jnp.concatenate([seen, self.context[slot % self.available]])
 
-    def step(self, state: HomeState, start: Array, fractions: Array, disturbance: Array) -> Step:
-        """One slot of a rollout that began in the slot ``start``."""
+    def step(
+        self, state: HomeState, start: Array, decision: Array, space: ActionSpace, disturbance: Array
+    ) -> tuple[Step, Deed]:
+        """One slot of a rollout that began in the slot ``start``, and what the decision was read as."""
         now = self.at(start + state.slot)
-        action = to_power(self.planning_home, observe(state, now), fractions)
-        return self.home.step(state, now, action, disturbance)
+        deed = space.carry_out(self.planning_home, observe(state, now), decision, self.scaler)
+        return self.home.step(state, now, deed.action, disturbance), deed
 
 
 def collect(
     environment: Environment,
-    policy: GaussianPolicy,
+    policy: StochasticPolicy,
     deviation: Float[Array, "actions"],
     shape: tuple,
     key: Array,
 ) -> Rollout:
-    """Let the policy act with standard ``deviation`` of its fractions; ``shape`` is (slots, rollouts)."""
+    """Let the policy explore with this ``deviation``; ``shape`` is (slots, rollouts)."""
     slots, rollouts = shape
     reset_key, noise_key, disturbance_key = jax.random.split(key, 3)
     states, starts = jax.vmap(environment.reset)(jax.random.split(reset_key, rollouts))
-    noise = jax.random.normal(noise_key, (slots, rollouts, deviation.size)) * deviation
+    noise = policy.space.noise(noise_key, (slots, rollouts)) * deviation
     begin = (states, starts, jax.vmap(environment.features)(states, starts))
 
-    def act(features: Array, noise: Array) -> tuple[Array, Array]:
+    def act(features: Array, noise: Array) -> tuple[Array, Callable[[Deed], tuple[Array, Array]]]:
         mean = policy.mean(features)
-        fractions = mean + noise
-        return fractions, log_density(fractions, mean, deviation)
 
-    return rolled_out(environment, act, begin, noise, disturbance_key)
+        def judge(deed: Deed) -> tuple[Array, Array]:
+            density = policy.space.log_density(deed.fractions, deed.reach, mean, deviation)
+            return density, policy.space.surprise(deed.reach, mean, deviation)
+
+        return mean + noise, judge
+
+    return rolled_out(environment, policy.space, act, begin, noise, disturbance_key)
 
 
 def rolled_out(
     environment: Environment,
-    act: Callable[[Array, Array], tuple[Array, Array]],
+    space: ActionSpace,
+    act: Callable[[Array, Array], tuple[Array, Callable[[Deed], tuple[Array, Array]]]],
     begin: tuple[HomeState, Int[Array, "rollouts"], Float[Array, "rollouts features"]],
     given: Array,
     key: Array,
 ) -> Rollout:
     """The one loop of learners, for rollouts side by side, (slots, rollouts, ...).
 
-    ``act(features, given)`` tells fractions and log density; ``given`` has one entry a slot and rollout.
+    ``act(features, given)`` tells a decision of the ``space``, and how likely and surprising the deed is
+    that comes of it; ``given`` has one entry a slot and rollout.
     The rollouts ``begin`` with these states of the home, slots of the traces, and features.
     """
     states, starts, features = begin
@@ -134,10 +154,11 @@ def rolled_out(
     disturbances = jax.vmap(lambda k: environment.home.disturbances(k, slots))(keys).T
 
     def one(state: HomeState, start: Array, features: Array, given: Array, disturbance: Array):
-        fractions, density = act(features, given)
-        step = environment.step(state, start, fractions, disturbance)
+        decision, judge = act(features, given)
+        step, deed = environment.step(state, start, decision, space, disturbance)
         after = environment.features(step.state, start + state.slot + 1)
-        return step.state, Rollout(Transitions(features, fractions, after), density, step.costs)
+        transition = Transitions(features, deed.fractions, after, deed.reach)
+        return step.state, Rollout(transition, *judge(deed), step.costs)
 
     def slot(carry: tuple[HomeState, Array], inputs: tuple[Array, Array]):
         states, features = carry

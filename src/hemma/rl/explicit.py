@@ -14,8 +14,10 @@ from hemma.home import Home
 from hemma.home.checks import require
 from hemma.rl.environment import Environment, Rollout
 from hemma.rl.improvement import Effort, PolicyImprovement, Proximal, RolloutMeans, measured
+from hemma.rl.policies.action_space import ActionSpace
 from hemma.rl.policies.exploration import Exploration, falling
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.rl.ppo import PPOSettings
 from hemma.rl.task import ExplicitReward, Task
 from hemma.rl.training import CHUNK
@@ -52,7 +54,7 @@ class ExplicitState(eqx.Module):
 
     learner: Any
     """The policy and what its improvement carries on."""
-    average: GaussianPolicy
+    average: StochasticPolicy
     """Exponential moving average of the policy's weights."""
     iteration: Int[Array, "*runs"]
     key: Array
@@ -63,20 +65,22 @@ class ExplicitLearning:
     """A policy improved on the explicit reward: by PPO, the paper's benchmark of that name."""
 
     settings: ExplicitSettings = field(default_factory=ExplicitSettings)
+    space: ActionSpace = FRACTIONS
+    """What the policy decides on."""
     other_improvement: PolicyImprovement | None = None
     """What takes the place of PPO as set, if anything."""
 
     @property
     def improvement(self) -> PolicyImprovement:
         """How the policy is improved."""
-        return self.other_improvement or Proximal(self.settings.ppo)
+        return self.other_improvement or Proximal(self.settings.ppo, self.space)
 
     @property
     def iterations(self) -> int:
         """How many iterations a training takes."""
         return self.settings.iterations
 
-    def policy(self, state: ExplicitState) -> GaussianPolicy:
+    def policy(self, state: ExplicitState) -> StochasticPolicy:
         """The averaged policy."""
         return state.average
 

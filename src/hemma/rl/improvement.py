@@ -9,7 +9,9 @@ from jaxtyping import Float
 
 from hemma.rl import ppo
 from hemma.rl.environment import Environment, Rollout, collect
-from hemma.rl.policies.policy import FEATURES, GaussianPolicy
+from hemma.rl.policies.action_space import ActionSpace
+from hemma.rl.policies.policy import FEATURES, StochasticPolicy
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.rl.ppo import PPOSettings
 from hemma.types import Array
 
@@ -46,7 +48,7 @@ class PolicyImprovement(Protocol):
         """A learner with a random policy of so many features."""
         ...
 
-    def policy(self, learner: Any) -> GaussianPolicy:
+    def policy(self, learner: Any) -> StochasticPolicy:
         """The learner's policy."""
         ...
 
@@ -71,6 +73,8 @@ class Proximal:
     """PPO, as in the paper: the home is a black box that is sampled."""
 
     settings: PPOSettings = field(default_factory=PPOSettings)
+    space: ActionSpace = FRACTIONS
+    """What the policy decides on."""
 
     @property
     def discount(self) -> float:
@@ -79,9 +83,9 @@ class Proximal:
 
     def start(self, key: Array, features: int = FEATURES) -> ppo.Learner:
         """Random policy and value function."""
-        return ppo.start(self.settings, key, features)
+        return ppo.start(self.settings, key, features, self.space)
 
-    def policy(self, learner: ppo.Learner) -> GaussianPolicy:
+    def policy(self, learner: ppo.Learner) -> StochasticPolicy:
         """The policy."""
         return learner.networks.policy
 

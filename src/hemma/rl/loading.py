@@ -7,12 +7,13 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from hemma.checkpoint import load_shapes, load_tree
+from hemma.checkpoint import load_header, load_shapes, load_tree
 from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.rl.policies.committee import CommitteePolicy
-from hemma.rl.policies.policy import GaussianPolicy, PolicyController
+from hemma.rl.policies.policy import PolicyController, StochasticPolicy
 from hemma.rl.policies.scaling import StateScaler
+from hemma.rl.policies.spaces import space_of
 
 Shape = tuple[int, ...]
 
@@ -32,7 +33,8 @@ def load_controllers(path: Path, planning_home: Home) -> PolicyController:
         )
     axes = shapes[f"{place}.bias"][:-1]  # runs, and the members of a committee
     features, quantities = shapes[f"{place}.network.weights[0]"][-1], shapes[".scaler.centre"][-1]
-    policy = _stacked(GaussianPolicy(_hidden(shapes, place), jax.random.key(0), features), axes)
+    space = space_of(path, load_header(path))
+    policy = _stacked(StochasticPolicy(_hidden(shapes, place), jax.random.key(0), features, space), axes)
     like = PolicyController(
         policy=CommitteePolicy(policy) if is_committee else policy,
         scaler=_stacked(StateScaler(jnp.zeros(quantities), jnp.ones(quantities)), axes[:1]),

@@ -11,9 +11,11 @@ from jaxtyping import Float, Int
 
 from hemma.home.checks import require
 from hemma.rl.descent import begin, descend
-from hemma.rl.environment import Rollout
+from hemma.rl.environment import Rollout, Transitions, flattened
+from hemma.rl.policies.action_space import ActionSpace
 from hemma.rl.policies.network import Network
-from hemma.rl.policies.policy import FEATURES, GaussianPolicy, log_density
+from hemma.rl.policies.policy import FEATURES, StochasticPolicy
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.types import Array
 
 
@@ -62,13 +64,19 @@ class PPOSettings:
 class ActorCritic(eqx.Module):
     """Policy and state value, trained together."""
 
-    policy: GaussianPolicy
+    policy: StochasticPolicy
     value: Network
 
-    def __init__(self, hidden: tuple[int, ...], key: Array, features: int = FEATURES):
+    def __init__(
+        self,
+        hidden: tuple[int, ...],
+        key: Array,
+        features: int = FEATURES,
+        space: ActionSpace = FRACTIONS,
+    ):
         """Random weights."""
         policy_key, value_key = jax.random.split(key)
-        self.policy = GaussianPolicy(hidden, policy_key, features)
+        self.policy = StochasticPolicy(hidden, policy_key, features, space)
         self.value = Network((features, *hidden, 1), value_key)
 
     def values(self, features: Float[Array, "*batch features"]) -> Float[Array, "*batch"]:
@@ -118,8 +126,7 @@ def advantages(
 class Batch(eqx.Module):
     """Samples of one update, shape (samples, ...)."""
 
-    features: Array
-    fractions: Array
+    transitions: Transitions
     log_density: Array
     advantage: Array
     target: Array
@@ -131,11 +138,13 @@ def loss(learner: ActorCritic, batch: Batch, deviation: Array, clip: float) -> A
 
     -E[min(rho A, clip(rho, 1 - c, 1 + c) A)] + E[(V - target)^2] / 2, rho = pi(a|s) / pi_old(a|s).
     """
-    mean = jax.vmap(learner.policy.mean)(batch.features)
-    ratio = jnp.exp(log_density(batch.fractions, mean, deviation) - batch.log_density)
+    mean = jax.vmap(learner.policy.mean)(batch.transitions.features)
+    deeds, space = batch.transitions, learner.policy.space
+    density = space.log_density(deeds.fractions, deeds.reach, mean, deviation)
+    ratio = jnp.exp(density - batch.log_density)
     bounded = jnp.clip(ratio, 1 - clip, 1 + clip)
     surrogate = jnp.minimum(ratio * batch.advantage, bounded * batch.advantage)
-    error = learner.values(batch.features) - batch.target
+    error = learner.values(batch.transitions.features) - batch.target
     return -jnp.mean(surrogate) + 0.5 * jnp.mean(error**2)
 
 
@@ -157,9 +166,11 @@ class Objective(eqx.Module):
     """Share of the learning rates to use, for rates that fall as training goes on."""
 
 
-def start(settings: PPOSettings, key: Array, features: int = FEATURES) -> Learner:
+def start(
+    settings: PPOSettings, key: Array, features: int = FEATURES, space: ActionSpace = FRACTIONS
+) -> Learner:
     """A learner with random weights."""
-    networks = ActorCritic(settings.hidden, key, features)
+    networks = ActorCritic(settings.hidden, key, features, space)
     return Learner(networks, begin(optimiser(settings), networks))
 
 
@@ -198,8 +209,5 @@ def _batch(networks: ActorCritic, rollout: Rollout, rewards: Array, settings: PP
     next_values = jnp.concatenate([values[1:], last[None]])
     advantage = advantages(rewards, values, next_values, settings)
     normal = (advantage - advantage.mean()) / (advantage.std() + 1e-6)
-    transitions = rollout.transitions
-    batch = Batch(
-        transitions.features, transitions.fractions, rollout.log_density, normal, advantage + values
-    )
-    return jax.tree.map(lambda x: x.reshape(-1, *x.shape[2:]), batch)
+    batch = Batch(rollout.transitions, rollout.log_density, normal, advantage + values)
+    return flattened(batch)

@@ -14,9 +14,10 @@ from hemma.errors import HemmaError
 from hemma.home import Home
 from hemma.home.selling import fit_selling
 from hemma.rl.environment import Environment, Transitions
-from hemma.rl.policies.actions import to_fractions
+from hemma.rl.policies.action_space import ActionSpace, Deed
 from hemma.rl.policies.scaling import NOTHING, SELLING, Context, StateScaler, fit_scaler
-from hemma.types import Action, Array, Costs, Exogenous, Observation
+from hemma.rl.policies.spaces import FRACTIONS
+from hemma.types import Action, Array, Costs, Exogenous, Observation, PaperState
 
 LEAST_ROOM = 2048
 """Slots: 85 days by the hour, so that a season and a day of it share compiled code."""
@@ -76,18 +77,20 @@ class Task(eqx.Module, Generic[Teacher]):
         return jax.random.fold_in(jax.random.key(self.seed), self.stream)
 
 
-def make_task(
+def make_task(  # noqa: PLR0913 - a home, as believed and as it is, days, a teacher, a seed, what is seen and done
     planning_home: Home,
     home: Home,
     exogenous: Exogenous,
     demonstrated: Demonstrated,
     seed: int,
     context: Context = NOTHING,
+    space: ActionSpace = FRACTIONS,
 ) -> Task[ExpertData]:
     """The task of learning from ``demonstrated`` and the traces ``exogenous`` of the same days, nothing else.
 
-    ``planning_home`` is ``home`` with an identified thermal model: it turns the learner's fractions into
-    powers, and the expert's powers into fractions. The scaler is fitted to the demonstrated states, and to
+    ``planning_home`` is ``home`` with an identified thermal model: it turns the learner's decisions into
+    powers, and the expert's powers into deeds of the ``space``. Where a deed is not what the expert did, the
+    battery's next energy is that of the deed. The scaler is fitted to the demonstrated states, and to
     the traces' selling price where that is no line of the buying price: then it is one more feature.
     ``context`` is what there is to see in each slot of ``exogenous`` besides the paper's state.
     """
@@ -98,16 +101,16 @@ def make_task(
         )
     selling = _untold(exogenous, context)
     scaler = fit_scaler(np.asarray(demonstrated.states), None if selling is None else selling[:-1])
-    actions = Action(*jnp.asarray(demonstrated.actions, float).T)
-    states = jnp.asarray(demonstrated.states, float)
+    shown = jax.tree.map(lambda x: jnp.asarray(x, float), demonstrated)
+    observation = _observed(shown.states, jnp.asarray(exogenous.selling_price, float)[:-1])
+    deed = space.shown(planning_home, observation, Action(*shown.actions.T), scaler)
     environment = _environment(planning_home, home, exogenous, scaler, context)
     seen = environment.context
     transitions = Transitions(
-        features=jnp.concatenate([scaler(states), seen[:-1]], axis=1),
-        fractions=to_fractions(planning_home, _observed(states), actions),
-        next_features=jnp.concatenate(
-            [scaler(jnp.asarray(demonstrated.next_states, float)), seen[1:]], axis=1
-        ),
+        features=jnp.concatenate([scaler(shown.states), seen[:-1]], axis=1),
+        fractions=deed.fractions,
+        next_features=jnp.concatenate([scaler(_after(planning_home, shown, deed)), seen[1:]], axis=1),
+        reach=deed.reach,
     )
     expert = ExpertData(transitions, jnp.asarray(len(demonstrated.actions)))
     return Task(environment, expert, jnp.asarray(seed), _stream(exogenous))
@@ -184,11 +187,20 @@ def _untold(exogenous: Exogenous, context: Context) -> Float[np.ndarray, "slots"
     return np.asarray(exogenous.selling_price, float)
 
 
-def _observed(states: Float[Array, "samples 7"]) -> Observation:
-    """What a controller saw in the paper's states; u- and the HVAC power before are not among them."""
+def _after(home: Home, shown: Demonstrated, deed: Deed) -> Float[Array, "samples 7"]:
+    """s' with the battery's energy after the deed; the very s' where the deed is what was done."""
+    before = shown.states[:, PaperState.BATTERY_ENERGY]
+    energy = home.battery.next_energy(before, deed.action.battery_power, home.slot_length)
+    is_same = deed.action.battery_power == shown.actions[:, 0]
+    kept = jnp.where(is_same, shown.next_states[:, PaperState.BATTERY_ENERGY], energy)
+    return jnp.asarray(shown.next_states).at[:, PaperState.BATTERY_ENERGY].set(kept)
+
+
+def _observed(states: Float[Array, "samples 7"], selling: Float[Array, "samples"]) -> Observation:
+    """What a controller saw in the paper's states; the HVAC power before is not among them."""
     pv, load, energy, outdoor, indoor, price, hour = states.T
     slots = jnp.arange(len(states))
-    return Observation(pv, load, energy, outdoor, indoor, price, price, hour, jnp.zeros_like(pv), slots)
+    return Observation(pv, load, energy, outdoor, indoor, price, selling, hour, jnp.zeros_like(pv), slots)
 
 
 def _stream(exogenous: Exogenous) -> UInt[Array, ""]:

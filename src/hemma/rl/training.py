@@ -194,8 +194,8 @@ def _score(policy: Policy, environment: Environment) -> tuple[Array, Array]:
 
     def slot(_: Array, carry: tuple[HomeState, Array, Array]) -> tuple[HomeState, Array, Array]:
         state, cost, deviation = carry
-        fractions = policy.mean(environment.features(state, state.slot))
-        step = environment.step(state, jnp.zeros((), int), fractions, jnp.zeros(()))
+        decision = policy.mean(environment.features(state, state.slot))
+        step = environment.step(state, jnp.zeros((), int), decision, policy.space, jnp.zeros(()))[0]
         cost = cost + step.costs.transaction + step.costs.ageing
         return step.state, cost, deviation + step.costs.temperature_deviation
 

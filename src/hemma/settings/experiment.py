@@ -14,6 +14,8 @@ from hemma.irl.maxent import MaxEntSettings
 from hemma.optimisation.hierarchy import HierarchySettings
 from hemma.rl.ddpg import DDPGSettings
 from hemma.rl.explicit import ExplicitSettings
+from hemma.rl.policies.action_space import ActionSpace
+from hemma.rl.policies.spaces import FRACTIONS, SPACES
 from hemma.rl.ppo import PPOSettings
 from hemma.settings.faults import FaultSettings
 
@@ -136,6 +138,9 @@ class Experiment:
     default: DefaultController = field(default_factory=DefaultController)
     faults: FaultSettings = field(default_factory=FaultSettings)
     """Of `hemma robustness`."""
+    actions: str = FRACTIONS.name
+    """What policies decide on, DDPG's aside: `fractions` of what is feasible, or the `stored value` of
+    a kWh; see docs/stored-value.md."""
     forecast_horizon: float = 36.0
     """How far ahead the rolling planners (MPC) look [h]."""
     learned: tuple[str, ...] | None = None
@@ -156,7 +161,13 @@ class Experiment:
         names = self.learned or ()
         require("experiment", len(set(names)) == len(names), "different methods as learned", names)
         require("experiment", self.forecast_horizon > 0, "forecast_horizon > 0", self.forecast_horizon)
+        require("experiment", self.actions in SPACES, f"actions one of {', '.join(SPACES)}", self.actions)
         require("experiment", self.pv_scale >= 0, "pv_scale >= 0", self.pv_scale)
+
+    @property
+    def space(self) -> ActionSpace:
+        """What the policies decide on."""
+        return SPACES[self.actions]
 
     def home(self, slot_length: float) -> Home:
         """The home for slots of ``slot_length`` [h], the building converted exactly."""

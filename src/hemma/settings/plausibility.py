@@ -195,7 +195,7 @@ BY_NAME: dict[str, Limits] = {
     **dict.fromkeys(("learning_rate", "value_learning_rate", "actor_rate", "critic_rate", "rate"), RATE),
     **dict.fromkeys(("validation_share", "least_improvement", "relaxing", "shrinking", "averaging"), SHARE),
     **dict.fromkeys(("discount", "trace", "following"), SHARE),
-    **dict.fromkeys(("gain_penalty", "penalty", "shrinkage", "weight_decay"), WEIGHT),
+    **dict.fromkeys(("gain_penalty", "penalty", "entropy", "shrinkage", "weight_decay"), WEIGHT),
     **dict.fromkeys(("first_deviation", "last_deviation"), SIGMA),
     **dict.fromkeys(("clip", "least_scale"), Limits(0, 100)),
     "log_density_bound": Limits(0, 1000),

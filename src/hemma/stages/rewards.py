@@ -25,7 +25,8 @@ def keep_rewards(training: Training, task: Task, label: str, store: Store) -> li
         return []
     file = reward_file(label, store)
     seeds = [int(seed) for seed in task.seed]
-    save_rewards(store.folder / file, LearnedReward(head, task.environment.scaler), {"seeds": seeds})
+    rewards = LearnedReward(head, task.environment.scaler, training.state.average.space)
+    save_rewards(store.folder / file, rewards, {"seeds": seeds})
     return [file]
 
 

@@ -203,7 +203,11 @@ def _keep(job: TrainingJob, training: Training, seconds: float, store: Store) ->
     write_curves(store.folder, curves, training.curve, home)
     made = controllers(training, job.task, job.algorithm)
     seen = PAPER.name if job.observer is None else job.observer.model.name
-    save_tree(store.folder / file, made, {"fingerprint": job.mark, "observation_model": seen})
+    save_tree(
+        store.folder / file,
+        made,
+        {"fingerprint": job.mark, "observation_model": seen, "actions": made.policy.space.name},
+    )
     rewards = keep_rewards(training, job.task, job.label, store)
     store.keep(job.label, job.mark, [file, *rewards, *curves], {"seconds": seconds})
 

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Float
 
 from hemma.home.checks import require
+from hemma.rl.policies.action_space import ActionSpace
 from hemma.rl.policies.policy import Policy
 from hemma.rl.task import Task
 from hemma.rl.training import Algorithm
@@ -16,15 +17,19 @@ from hemma.types import Array
 
 
 class CommitteePolicy(eqx.Module):
-    """The mean of what several policies would do, each within its bounds."""
+    """What several policies agree on."""
 
     members: Policy
     """Stacked along a first axis."""
 
     def mean(self, features: Float[Array, "features"]) -> Float[Array, "actions"]:
-        """Fractions of what is feasible: (1 / K) sum_k clip(mu_k(s), -1, 1)."""
-        fractions = eqx.filter_vmap(lambda policy: policy.mean(features))(self.members)
-        return jnp.mean(jnp.clip(fractions, -1.0, 1.0), axis=0)
+        """The mean of the members' decisions, each within its bounds."""
+        return self.space.agreed(eqx.filter_vmap(lambda policy: policy.mean(features))(self.members))
+
+    @property
+    def space(self) -> ActionSpace:
+        """That of the members."""
+        return self.members.space
 
 
 @dataclass(frozen=True)

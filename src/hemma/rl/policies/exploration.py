@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Float
 
 from hemma.home.checks import require
-from hemma.rl.policies.policy import GaussianPolicy
+from hemma.rl.policies.policy import StochasticPolicy
 from hemma.types import Array
 
 
@@ -38,7 +38,9 @@ class Exploration:
         share = jnp.minimum(iteration / (self.shrinking * iterations), 1.0)
         return first * (last / first) ** share
 
-    def averaged(self, average: GaussianPolicy, policy: GaussianPolicy, iteration: Array) -> GaussianPolicy:
+    def averaged(
+        self, average: StochasticPolicy, policy: StochasticPolicy, iteration: Array
+    ) -> StochasticPolicy:
         """The exponential moving average of the weights after an iteration; short at first."""
         keep = jnp.minimum(self.averaging, iteration / (iteration + 10.0))
         return jax.tree.map(lambda a, p: keep * a + (1 - keep) * p, average, policy)

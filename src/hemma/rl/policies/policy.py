@@ -4,69 +4,72 @@ from typing import Protocol, runtime_checkable
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Float
 
 from hemma.home import AbstractController, Home, Memory
-from hemma.rl.policies.actions import to_power
+from hemma.rl.policies.action_space import ActionSpace
 from hemma.rl.policies.network import Network
 from hemma.rl.policies.scaling import Context, StateScaler
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.types import Action, Array, Observation
 
 FEATURES = 8
 """Of the paper's state; what else a policy sees follows them."""
 ACTIONS = 2
-SLOPE_BEYOND = 0.05
-"""Slope of the mean where it lies beyond [-1, 1]: a flat one would have no gradient to come back by."""
 
 
 @runtime_checkable
 class Policy(Protocol):
     """What a learner ends with: a module that says what to do, without randomness."""
 
+    @property
+    def space(self) -> ActionSpace:
+        """What its decisions mean."""
+        ...
+
     def mean(self, features: Float[Array, "features"]) -> Float[Array, "actions"]:
-        """Fractions of what is feasible (``hemma.rl.policies.actions``) in a state of these features."""
+        """The decision in a state of these features."""
         ...
 
 
-class GaussianPolicy(eqx.Module):
-    """A Gaussian over action fractions with a simple mean: HVAC affine in the state, battery by a network.
+class StochasticPolicy(eqx.Module):
+    """Decisions around a simple mean: the HVAC's affine in the state, the battery's by a network.
 
-    The HVAC's fraction corrects the comfort action (``rl.policies.actions``), and the correction must go on
-    beyond the hottest training day; a network would bend it there. Both means are bent at -1 and 1 only, and
-    keep a little slope beyond for the gradient. The fractions that are sampled are not bounded: the
-    home takes those beyond [-1, 1] as the bound, and the density stays that of the sample, so log pi is
-    finite everywhere (see ``hemma.rl.policies.actions``).
+    The HVAC's fraction corrects the comfort action (``hemma.rl.policies.fractions``), and the correction must
+    go on beyond the hottest training day; a network would bend it there. What decisions mean, and how the
+    policy explores around its mean, is a matter of its ``space``.
     """
 
     network: Network
-    """Features to the battery's fraction."""
+    """Features to the battery's decision."""
     linear: Float[Array, "actions state"]
     """Of the features of the paper's state alone."""
     bias: Float[Array, "actions"]
+    space: ActionSpace = eqx.field(static=True)
+    """What its decisions mean, and how it explores."""
 
-    def __init__(self, sizes: tuple[int, ...], key: Array, features: int = FEATURES):
-        """Random weights, hidden layers of these sizes; the mean starts near 0, battery at rest."""
+    def __init__(
+        self,
+        sizes: tuple[int, ...],
+        key: Array,
+        features: int = FEATURES,
+        space: ActionSpace = FRACTIONS,
+    ):
+        """Random weights, hidden layers of these sizes; the mean starts near 0."""
         self.network = Network((features, *sizes, 1), key, last_scale=0.01)
         self.linear = jnp.zeros((ACTIONS, FEATURES))
         self.bias = jnp.zeros(ACTIONS)
+        self.space = space
 
     def mean(self, features: Float[Array, "features"]) -> Float[Array, "actions"]:
-        """Mean fractions at one state: y = W x + b + (network(x, c), 0), bent at -1 and 1; x are the features
-        of the paper's state, c what else is seen."""
-        affine = self.linear @ features[:FEATURES] + self.bias
-        raw = jnp.concatenate([affine[:1] + self.network(features), affine[1:]])
-        bounded = jnp.clip(raw, -1.0, 1.0)
-        return bounded + SLOPE_BEYOND * (raw - bounded)
-
-
-def log_density(
-    fractions: Float[Array, "*batch actions"],
-    mean: Float[Array, "*batch actions"],
-    deviation: Float[Array, "actions"],
-) -> Float[Array, "*batch"]:
-    """log pi(a|s) of a diagonal Gaussian: -sum (a - mu)^2 / (2 sigma^2) - sum log(sigma sqrt(2 pi))."""
-    distance = (fractions - mean) / deviation
-    return -0.5 * jnp.sum(distance**2, axis=-1) - jnp.sum(jnp.log(deviation * jnp.sqrt(2 * jnp.pi)))
+        """Mean decision at one state: y = W x + b + (network(x, c), 0), bent as its space has it; x are the
+        features of the paper's state, for the battery those that its space heeds, c what else is seen."""
+        heeded = np.asarray(self.space.heeds)
+        state, context = features[:FEATURES], features[FEATURES:]
+        affine = jnp.where(np.stack([heeded, np.ones(FEATURES, bool)]), self.linear, 0.0) @ state + self.bias
+        battery = affine[:1] + self.network(jnp.concatenate([jnp.where(heeded, state, 0.0), context]))
+        return self.space.bent(jnp.concatenate([battery, affine[1:]]))
 
 
 class PolicyController(AbstractController):
@@ -87,7 +90,8 @@ class PolicyController(AbstractController):
 
     def act(self, observation: Observation, features: Float[Array, "features"]) -> Action:
         """The action (e, h) [kW] when all that the policy sees is ``features``."""
-        return to_power(self.planning_home, observation, self.policy.mean(features))
+        decision, space = self.policy.mean(features), self.policy.space
+        return space.carry_out(self.planning_home, observation, decision, self.scaler).action
 
 
 class InformedController(AbstractController):

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from hemma.home import paper_state
 from hemma.types import Array, Observation, PaperState
 
-HOUR = int(PaperState.HOUR_OF_DAY)
+HOUR, PRICE = int(PaperState.HOUR_OF_DAY), int(PaperState.BUYING_PRICE)
 SELLING = 6
 """Position of u- among the quantities that are scaled, behind the six of the paper's state."""
 SPIKY = np.array([True, True, False, False, False, True, True])
@@ -68,6 +68,10 @@ class StateScaler(eqx.Module):
         """Features of what is observed: the paper's state, and the selling price where it is a quantity."""
         features = self(paper_state(observation))
         return jnp.concatenate([features, self.selling(observation.selling_price)], axis=-1)
+
+    def price(self, price: Float[Array, "*batch"]) -> Float[Array, "*batch"]:
+        """A price, or what a kWh is worth [currency/kWh], scaled as the buying price is."""
+        return jnp.arcsinh((price - self.centre[PRICE]) / self.spread[PRICE])
 
     def selling(self, price: Float[Array, "*batch"]) -> Float[Array, "*batch prices"]:
         """The feature of a selling price [currency/kWh], or none where the state tells it."""

@@ -22,7 +22,7 @@ from hemma.results.store import Store
 from hemma.rl.carry_over import carried_over
 from hemma.rl.explicit import ExplicitLearning, ExplicitSettings, comfort_prices
 from hemma.rl.improvement import Proximal
-from hemma.rl.policies.policy import GaussianPolicy, PolicyController
+from hemma.rl.policies.policy import PolicyController, StochasticPolicy
 from hemma.rl.task import Task, explicit_task, make_task, stack
 from hemma.settings.experiment import Experiment
 from hemma.stages.demonstrate import Demonstration, Expert, demonstration
@@ -85,7 +85,7 @@ class Origin:
         """r of a run."""
         return self.rewards.run(seed).head
 
-    def policy(self, seed: int) -> GaussianPolicy:
+    def policy(self, seed: int) -> StochasticPolicy:
         """The policy of a run."""
         return jax.tree.map(lambda x: x[seed], self.trained.controllers.policy)
 
@@ -102,13 +102,15 @@ def imitation_job(settled: Settled, algorithm: AdversarialImitation, name: str) 
 def airl_job(settled: Settled) -> TrainingJob:
     """AIRL from the demonstrations of that place: one agent, so that a run has one reward to carry over."""
     experiment = settled.experiment
-    return imitation_job(settled, AdversarialImitation(experiment.airl, Proximal(experiment.ppo)), "AIRL")
+    return imitation_job(
+        settled, AdversarialImitation(experiment.airl, Proximal(experiment.ppo, experiment.space)), "AIRL"
+    )
 
 
 def gail_job(settled: Settled) -> TrainingJob:
     """GAIL from the same."""
     experiment = settled.experiment
-    gail = AdversarialImitation(experiment.airl, Proximal(experiment.ppo), ImitationScore)
+    gail = AdversarialImitation(experiment.airl, Proximal(experiment.ppo, experiment.space), ImitationScore)
     return imitation_job(settled, gail, "GAIL")
 
 
@@ -127,7 +129,7 @@ def adaptation_jobs(settled: Sequence[Settled], origin: Origin) -> list[Training
     pay = _Pay("adapted", lambda seed: Inheritance(origin.head(seed), origin.policy(seed)))
     experiment = origin.settled.experiment
     settings = ExplicitSettings(experiment.airl.iterations, experiment.airl.exploration, experiment.ppo)
-    algorithm = InheritedReoptimisation(Reoptimisation(ExplicitLearning(settings)))
+    algorithm = InheritedReoptimisation(Reoptimisation(ExplicitLearning(settings, experiment.space)))
     training_jobs = [_frozen_job(one, origin, pay) for one in settled]
     return [replace(one, algorithm=algorithm) for one in training_jobs]
 
@@ -150,7 +152,7 @@ def _frozen_job(settled: Settled, origin: Origin, pay: _Pay) -> TrainingJob:
 
     basis = fingerprint("frozen", settled.mark, origin.trained.mark, pay.name)
     stacked = stack([task(seed) for seed in settled.seeds])
-    algorithm = Reoptimisation(ExplicitLearning(settled.experiment.explicit))
+    algorithm = Reoptimisation(ExplicitLearning(settled.experiment.explicit, settled.experiment.space))
     return TrainingJob(f"{settled.label}-{pay.name}", algorithm, stacked, basis)
 
 
@@ -160,7 +162,12 @@ def bill_job(settled: Settled) -> TrainingJob:
     [price] = comfort_prices(case.home, case.first_days(days), [COMFORT_MULTIPLE])
     task = stack([settled.task(float(price), seed) for seed in settled.seeds])
     basis = fingerprint("bill", settled.mark, float(price))
-    return TrainingJob(f"{settled.label}-bill", ExplicitLearning(settled.experiment.explicit), task, basis)
+    return TrainingJob(
+        f"{settled.label}-bill",
+        ExplicitLearning(settled.experiment.explicit, settled.experiment.space),
+        task,
+        basis,
+    )
 
 
 def carried_policies(trained: Trained, training_job: TrainingJob) -> PolicyController:
@@ -172,4 +179,5 @@ def carried_policies(trained: Trained, training_job: TrainingJob) -> PolicyContr
 def _demonstrated(settled: Settled, shown: Demonstration, seed: int) -> Task:
     case = settled.changed.case
     days = case.first_days(shown.days)
-    return make_task(settled.planning_home, case.home, days, shown.demonstrated, seed)
+    space = settled.experiment.space
+    return make_task(settled.planning_home, case.home, days, shown.demonstrated, seed, space=space)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from hemma.home import Battery, ExplicitThermalModel, Home, Hvac
 from hemma.home.comfort import observed_comfort_power
-from hemma.rl.policies.actions import FINENESS, to_fractions, to_power
+from hemma.rl.policies.fractions import FINENESS, to_fractions, to_power
 from hemma.types import Action, Observation
 
 unit = st.floats(-1, 1, width=32)
