@@ -72,6 +72,8 @@ class Reoptimisation:
 
     learning: ExplicitLearning = field(default_factory=ExplicitLearning)
     """The loop, its sizes and its exploration; what it pays is replaced."""
+    entropy: float = 0.0
+    """Weight of the policy's entropy beside the reward, as in AIRL."""
 
     @property
     def iterations(self) -> int:
@@ -90,7 +92,7 @@ class Reoptimisation:
         """One improvement of the policy."""
 
         def paid(rollout: Rollout) -> Float[Array, "slots rollouts"]:
-            return task.teacher.rewards(rollout.transitions)
+            return task.teacher.rewards(rollout.transitions) + self.entropy * rollout.surprise
 
         return self.learning.improved(state, task.environment, paid, standard)
 

@@ -129,7 +129,8 @@ def adaptation_jobs(settled: Sequence[Settled], origin: Origin) -> list[Training
     pay = _Pay("adapted", lambda seed: Inheritance(origin.head(seed), origin.policy(seed)))
     experiment = origin.settled.experiment
     settings = ExplicitSettings(experiment.airl.iterations, experiment.airl.exploration, experiment.ppo)
-    algorithm = InheritedReoptimisation(Reoptimisation(ExplicitLearning(settings, experiment.space)))
+    learning = ExplicitLearning(settings, experiment.space)
+    algorithm = InheritedReoptimisation(Reoptimisation(learning, experiment.airl.entropy))
     training_jobs = [_frozen_job(one, origin, pay) for one in settled]
     return [replace(one, algorithm=algorithm) for one in training_jobs]
 
@@ -152,7 +153,9 @@ def _frozen_job(settled: Settled, origin: Origin, pay: _Pay) -> TrainingJob:
 
     basis = fingerprint("frozen", settled.mark, origin.trained.mark, pay.name)
     stacked = stack([task(seed) for seed in settled.seeds])
-    algorithm = Reoptimisation(ExplicitLearning(settled.experiment.explicit, settled.experiment.space))
+    experiment = settled.experiment
+    learning = ExplicitLearning(experiment.explicit, experiment.space)
+    algorithm = Reoptimisation(learning, experiment.airl.entropy)
     return TrainingJob(f"{settled.label}-{pay.name}", algorithm, stacked, basis)
 
 
