@@ -60,9 +60,9 @@ def test_maximum_entropy_finds_it_too():
 
 
 def test_demonstrations_that_no_worth_would_show_end_where_their_deeds_do():
-    """Half charging is shown as full charging, and the next energy is that of full charging."""
+    """Charging at 2 kW of 3 is shown as full charging, and the next energy is that of full charging."""
     days = traces(2)
-    shown = demonstrate(Home(), days, lambda o: Action(jnp.asarray(1.5), jnp.asarray(0.0)))
+    shown = demonstrate(Home(), days, lambda o: Action(jnp.asarray(2.0), jnp.asarray(0.0)))
     task = make_task(Home(), Home(), days, shown, 0, space=STORED_VALUE)
     first = jax.tree.map(lambda x: x[0], task.teacher.transitions)
     scaler = task.environment.scaler

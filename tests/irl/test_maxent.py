@@ -113,7 +113,8 @@ def test_weights_step_along_the_difference_of_expectations():
     learned = LearnedWeights(start, start, jnp.zeros((), int))
 
     def mean(batch):
-        rows = zip(*(np.asarray(x, float) for x in jax.tree.leaves(batch)), strict=True)
+        columns = (batch.features, batch.fractions, batch.next_features)
+        rows = zip(*(np.asarray(x, float) for x in columns), strict=True)
         return np.mean([by_hand(s, a, after) for s, a, after in rows], axis=0)
 
     expected = vector(start.weights) + 0.05 * (mean(expert) - mean(agent) - 0.5 * vector(start.weights))

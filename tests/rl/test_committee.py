@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from hemma.errors import HemmaError
+from hemma.rl.policies.action_space import ActionSpace
 from hemma.rl.policies.committee import Committee, CommitteePolicy
+from hemma.rl.policies.spaces import FRACTIONS
 from hemma.rl.task import Task
 
 TASK = object.__new__(Task)
@@ -25,6 +27,7 @@ class Constant(eqx.Module):
     """A policy that always asks for the same."""
 
     fractions: jax.Array
+    space: ActionSpace = eqx.field(static=True, default=FRACTIONS)
 
     def mean(self, features):
         return self.fractions

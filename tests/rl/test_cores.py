@@ -17,12 +17,14 @@ import hashlib
 import hemma
 import jax, jax.numpy as jnp
 from hemma.rl import ppo
+from hemma.rl.environment import Transitions
 
 learner = jax.vmap(lambda key: ppo.ActorCritic((64, 64), key))(jax.random.split(jax.random.key(0), 2))
-shapes = [(2, 768, 8), (2, 768, 2), *[(2, 768)] * 3]
+shapes = [(2, 768, 8), (2, 768, 2), (2, 768, 8), (2, 768, 0), *[(2, 768)] * 3]
 draws = [jax.random.normal(jax.random.key(n), shape) for n, shape in enumerate(shapes)]
+batch = ppo.Batch(Transitions(*draws[:4]), *draws[4:])
 slope = lambda one, batch: jax.grad(ppo.loss)(one, batch, jnp.asarray([0.5, 0.2]), 0.2)
-found = jax.jit(jax.vmap(slope))(learner, ppo.Batch(*draws))
+found = jax.jit(jax.vmap(slope))(learner, batch)
 print(hashlib.sha256(b"".join(leaf.tobytes() for leaf in jax.tree.leaves(found))).hexdigest())
 """
 

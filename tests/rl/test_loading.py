@@ -48,7 +48,7 @@ def test_actions_of_a_later_version_are_refused(tmp_path):
     policy = filled(StochasticPolicy((4,), jax.random.key(0)), (1,))
     scaler, home = filled(StateScaler(jnp.zeros(6), jnp.ones(6)), (1,)), filled(Home(), (1,))
     save_tree(tmp_path / "c.safetensors", PolicyController(policy, scaler, home), {"actions": "set points"})
-    with pytest.raises(HemmaError, match=r"one of fractions, stored value, got 'set points'.*later version"):
+    with pytest.raises(HemmaError, match=r"one of fractions, stored value, got set points.*later version"):
         load_controllers(tmp_path / "c.safetensors", Home())
 
 

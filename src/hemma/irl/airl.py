@@ -46,7 +46,7 @@ class AIRLSettings:
     """Weight of the gradient penalty at first."""
     relaxing: float = 1.0
     """Share of the iterations over which that weight falls to 0, linearly."""
-    entropy: float = 0.1
+    entropy: float = 0.3
     """Weight of the policy's entropy beside the reward, where the policy can change it (`stored value`)."""
     log_density_bound: float = 10.0
     """log pi enters the logit within plus and minus this."""
@@ -168,7 +168,7 @@ class AdversarialImitation:
         )
 
         # Train the energy management policy (lines 9 and 10).
-        rewards = head.rewards(rollout.transitions) + settings.entropy * rollout.surprise
+        rewards = head.rewards(rollout.transitions) + settings.entropy * head.entropy_share * rollout.surprise
         learner = self.improvement.improve(state.learner, rollout, standard(rewards), effort, improve_key)
         average = settings.exploration.averaged(state.average, self.improvement.policy(learner), n)
         seen = measured(rollout, rewards)

@@ -2,6 +2,7 @@
 
 import math
 from abc import abstractmethod
+from typing import ClassVar
 
 import equinox as eqx
 import jax
@@ -16,6 +17,9 @@ from hemma.types import Array
 
 class AbstractHead(eqx.Module):
     """The learned part of a discriminator."""
+
+    entropy_share: ClassVar[float] = 1.0
+    """Share of the setting ``airl.entropy`` that counts beside its rewards."""
 
     @classmethod
     @abstractmethod
@@ -87,6 +91,9 @@ class ImitationScore(AbstractHead):
 
     Ho and Ermon 2016, arXiv 1606.03476.
     """
+
+    entropy_share: ClassVar[float] = 0.1
+    """Near its saddle, where f is 0, its rewards move by tenths where AIRL's move by whole numbers."""
 
     score: Network
     """f(s, a)."""
