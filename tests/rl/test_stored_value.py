@@ -151,6 +151,16 @@ def test_the_density_has_a_finite_gradient_however_far_the_mean_is(mean, low, le
         assert float(slope) * mean < 0, "the mean must be able to come back"
 
 
+def test_what_is_tried_is_read_as_what_is_feasible():
+    """A nearly full battery takes a third of a full charge, whatever is asked of it."""
+    room = (6.0 - 5.05) / 0.95
+    tried = STORED_VALUE.tried(Home(), seen(energy=5.05), jnp.asarray([1.0, 0.0]))
+    np.testing.assert_allclose(tried.action.battery_power, room, rtol=1e-4)
+    np.testing.assert_allclose(tried.fractions, [room / 3.0, 0.0], rtol=1e-4)
+    half = STORED_VALUE.tried(Home(), seen(), jnp.asarray([-0.5, 0.0]))
+    np.testing.assert_allclose(half.action.battery_power, -1.5, rtol=1e-6)
+
+
 def test_an_error_is_the_way_into_the_reach():
     reach = jnp.asarray([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]])
     mean = jnp.asarray([[-0.5, 0.2], [0.4, 0.2], [1.25, 0.2]])

@@ -135,9 +135,9 @@ def _answer(run: LearnedReward, home: Home, point: Moment, fractions: Float[Arra
         slot=jnp.zeros((), int),
     )
     observation = observe(state, point.now)
-    action = run.space.tried(home, observation, fractions)
-    step = home.step(state, point.now, action, jnp.zeros(()))
-    seen = run.transitions(observation, fractions, observe(step.state, point.after))
+    deed = run.space.tried(home, observation, fractions)
+    step = home.step(state, point.now, deed.action, jnp.zeros(()))
+    seen = run.transitions(observation, deed.fractions, observe(step.state, point.after))
     return Answers(
         battery_power=step.action.battery_power,
         next_temperature=step.state.indoor_temperature,

@@ -56,8 +56,8 @@ class ActionSpace(Protocol):
         planning_home: Home,
         observation: Observation,
         fractions: Float[Array, "*batch actions"],
-    ) -> Action:
-        """The feasible action [kW] that rewards read as these fractions, or the nearest."""
+    ) -> Deed:
+        """What rewards read as these fractions, or the nearest that is feasible."""
         ...
 
     def noise(self, key: Array, shape: tuple[int, ...]) -> Float[Array, "*shape actions"]:

@@ -89,8 +89,7 @@ class Fractions:
         scaler: StateScaler,
     ) -> Deed:
         """``to_power``; what rewards read is the decision itself."""
-        action = to_power(planning_home, observation, decision)
-        return Deed(action, decision, jnp.zeros((*decision.shape[:-1], 0)))
+        return self.tried(planning_home, observation, decision)
 
     def shown(
         self, planning_home: Home, observation: Observation, action: Action, scaler: StateScaler
@@ -104,9 +103,10 @@ class Fractions:
         planning_home: Home,
         observation: Observation,
         fractions: Float[Array, "*batch actions"],
-    ) -> Action:
-        """``to_power``."""
-        return to_power(planning_home, observation, fractions)
+    ) -> Deed:
+        """All fractions are feasible."""
+        action = to_power(planning_home, observation, fractions)
+        return Deed(action, fractions, jnp.zeros((*fractions.shape[:-1], 0)))
 
     def noise(self, key: Array, shape: tuple[int, ...]) -> Float[Array, "*shape actions"]:
         """Standard normal."""

@@ -133,14 +133,16 @@ class StoredValue:
         planning_home: Home,
         observation: Observation,
         fractions: Float[Array, "*batch actions"],
-    ) -> Action:
-        """The share of the largest power, as far as it is feasible."""
+    ) -> Deed:
+        """The share of the largest power, as far as it is feasible, of the menu or not."""
         battery = planning_home.battery
         lowest, highest = battery.power_limits(observation.battery_energy, planning_home.slot_length)
         share = fractions[..., 0]
         limit = jnp.where(share > 0, battery.max_charging_power, battery.max_discharging_power)
-        hvac = hvac_power(planning_home, observation, fractions[..., 1])
-        return Action(jnp.clip(share * limit, lowest, highest), hvac)
+        power = jnp.clip(share * limit, lowest, highest)
+        action = Action(power, hvac_power(planning_home, observation, fractions[..., 1]))
+        read = jnp.stack([_share(planning_home, power), fractions[..., 1]], axis=-1)
+        return Deed(action, read, jnp.zeros((*read.shape[:-1], self.bounds)))
 
     def noise(self, key: Array, shape: tuple[int, ...]) -> Float[Array, "*shape actions"]:
         """Standard logistic for the worth, standard normal for the HVAC."""
